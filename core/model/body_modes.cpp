@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/model/beam.hpp"
 #include "core/model/discrete_body.hpp"
+#include "core/model/error_estimate.hpp"
 #include "core/model/joints/coupled_bodies.hpp"
 #include "core/model/joints/joints.hpp"
 #include "core/model/modes/modal_solver.hpp"
@@ -69,6 +70,7 @@ namespace {
 constexpr double tets_of_first_round = 200.0;
 constexpr double finer = 0.25;  // ratio of element volume between refinement steps
 constexpr std::size_t max_rounds = 8;
+constexpr double max_refined_dofs = 3e5;  // about 3 GB and a minute
 
 void add(const ModelCost& more, ModelCost& to) {
   to.mesh_s += more.mesh_s;
@@ -77,7 +79,10 @@ void add(const ModelCost& more, ModelCost& to) {
   to.iterate_s += more.iterate_s;
 }
 
-SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const ProgressHook& progress) {
+enum class Estimate { wanted, none };
+
+SolvedBody solve_once(const BodySpec& body, const MeshSize& size, Estimate estimate,
+                      const ProgressHook& progress) {
   const Material unit{1.0, 1.0, body.poissons_ratio, {}};
   std::vector<DiscreteBody> discrete{discretised(body, unit, size, {}, progress)};
   DiscreteBody& only = discrete.front();
@@ -87,6 +92,9 @@ SolvedBody solve_once(const BodySpec& body, const MeshSize& size, const Progress
   solved.modes.kappa_rad_per_m = modes.omega_rad_s;
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
   solved.modes.report = report_on(discrete, modes);
+  if (estimate == Estimate::wanted) {
+    solved.modes.estimate = estimate_error(body, unit, only, modes, progress);
+  }
   solved.displacement = with_constrained_rows(modes.shapes, only.dofs);
   solved.mesh = std::move(only.mesh);
   return solved;
@@ -104,7 +112,7 @@ Eigen::ArrayXd tracked_frequencies(const BodySpec& body, const MeshSize& size,
   Eigen::ArrayXd above;
   for (int i = 0; above.size() == 0 && i < max_doublings; ++i) {
     wider.band_limit_rad_per_m *= 2.0;
-    above = solve_once(wider, size, {}).modes.kappa_rad_per_m;
+    above = solve_once(wider, size, Estimate::none, {}).modes.kappa_rad_per_m;
   }
   return above.head(std::min<Eigen::Index>(above.size(), 1));
 }
@@ -121,14 +129,34 @@ double remaining_change(double moved_before, double moved) {
   return ratio < 1.0 ? moved * ratio / (1.0 - ratio) : HUGE_VAL;
 }
 
-// One small move may be chance: two in a row, and little left.
-bool has_converged(const std::vector<RefinementRound>& rounds, double accuracy) {
+// The largest error of a frequency by the next element order; infinite if that is not known, or if
+// it has further modes in the band.
+double estimated_error(const BodyModes& modes) {
+  const Eigen::Index count = modes.kappa_rad_per_m.size();
+  const Eigen::ArrayXd& larger = modes.estimate.kappa_rad_per_m;
+  if (count == 0 || (larger < modes.band_limit_rad_per_m).count() != count) {
+    return HUGE_VAL;
+  }
+  return (modes.kappa_rad_per_m / larger.head(count) - 1.0).maxCoeff();
+}
+
+// One small move may be chance: two in a row, and little left, by how the moves shrink or by the
+// next element order. Moves that shrink slowly because they are small already leave the latter.
+bool has_converged(const std::vector<RefinementRound>& rounds, double estimated, double accuracy) {
   if (rounds.size() < 3) {
     return false;
   }
   const double before = rounds[rounds.size() - 2].moved;
   const double last = rounds.back().moved;
-  return std::max(before, last) <= accuracy && remaining_change(before, last) <= accuracy;
+  return std::max(before, last) <= accuracy &&
+         std::min(remaining_change(before, last), estimated) <= accuracy;
+}
+
+// Where the given triangles are finer than the bound, lowering it would refine nothing.
+double next_volume_m3(double bound_m3, const TetMesh& mesh) {
+  constexpr double usual = 0.25;  // least ratio of the mean to the bound where it is the bound
+  const double mean_m3 = volume_m3(mesh) / static_cast<double>(mesh.tets.rows());
+  return finer * std::min(bound_m3, mean_m3 / usual);
 }
 
 void check_can_settle(const std::vector<Fixation>& fixations) {
@@ -168,9 +196,12 @@ std::string nonconverged_region(const std::vector<double>& before_m2,
     history += std::isfinite(round.moved) ? fmt::format(", moved {:.2g} %", 100.0 * round.moved)
                                           : std::string{};
   }
-  throw ModelError{fmt::format(
-      "mesh: the frequencies have not settled to {} % within {:.0g} tetrahedra and {} rounds{}{}",
-      100.0 * accuracy, max_tets, max_rounds, history, unsettled.empty() ? "" : "; " + unsettled)};
+  throw ModelError{
+      fmt::format("mesh: the frequencies have not settled to {} % within {:.0g} tetrahedra, {:.0g} "
+                  "unknowns and "
+                  "{} rounds{}{} (ask for less, or leave accuracy out and give a size)",
+                  100.0 * accuracy, max_tets, max_refined_dofs, max_rounds, history,
+                  unsettled.empty() ? "" : "; " + unsettled)};
 }
 
 SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
@@ -184,10 +215,13 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
   Eigen::ArrayXd before;
   std::vector<double> held_before_m2;
   std::string unsettled;
-  while (rounds.size() < max_rounds && (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
+  int dofs = 0;
+  while (rounds.size() < max_rounds && dofs <= finer * max_refined_dofs &&
+         (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
     size.max_tet_volume_m3 = volume_m3;
-    SolvedBody solved = solve_once(body, size, progress);
+    SolvedBody solved = solve_once(body, size, Estimate::wanted, progress);
     const Eigen::ArrayXd after = tracked_frequencies(body, size, solved);
+    dofs = solved.modes.report.dofs;
     add(solved.modes.report.cost, cost);
     const double moved = rounds.empty() ? HUGE_VAL : largest_change(before, after);
     rounds.push_back(
@@ -196,14 +230,14 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
     unsettled = nonconverged_region(held_before_m2, held_m2);
     held_before_m2 = held_m2;
     const bool is_far_above = rounds.size() > 1 && before.size() == 0 && after.size() == 0;
-    if (is_far_above ||
-        (before.size() == after.size() && has_converged(rounds, accuracy) && unsettled.empty())) {
+    if (is_far_above || (before.size() == after.size() && unsettled.empty() &&
+                         has_converged(rounds, estimated_error(solved.modes), accuracy))) {
       solved.modes.report.refinement = rounds;
       solved.modes.report.cost = cost;
       return solved;
     }
     before = after;
-    volume_m3 *= finer;
+    volume_m3 = next_volume_m3(volume_m3, solved.mesh);
   }
   throw_not_converged(rounds, accuracy, unsettled);
 }
@@ -237,8 +271,9 @@ SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress) {
       keep_touchable_part(body.shape, solved);
       return solved;
     }
-    SolvedBody solved =
-        body.mesh.accuracy ? refine(body, progress) : solve_once(body, body.mesh.size, progress);
+    SolvedBody solved = body.mesh.accuracy
+                            ? refine(body, progress)
+                            : solve_once(body, body.mesh.size, Estimate::wanted, progress);
     keep_touchable_part(body.shape, solved);
     return solved;
   } catch (const std::bad_alloc&) {

@@ -10,6 +10,15 @@ namespace tapstudy::core {
 // Identical text for bodies with identical solutions.
 std::string content_key(const BodySpec& body);
 
+// The same body in the space of the next higher element order on the same tetrahedra (quadratic for
+// linear elements, cubic for quadratic ones): the drop of its frequencies estimates the
+// discretisation error, from below.
+struct ErrorEstimate {
+  Eigen::ArrayXd kappa_rad_per_m;  // of the modes and a few beyond the band, ascending
+  std::string not_estimated;       // why kappa_rad_per_m is empty; empty: estimated
+  double seconds{};                // that this took
+};
+
 // The touchable part of a body's modes: as ModalModel, for the unit material.
 struct BodyModes {
   Eigen::ArrayXd kappa_rad_per_m;  // ascending
@@ -23,6 +32,7 @@ struct BodyModes {
   Eigen::MatrixXd kinetic_share;
   Eigen::MatrixXd strain_share;
   ModelReport report;
+  ErrorEstimate estimate;
 };
 
 // The complete solution, for figures and export; of a beam, mesh and displacement are empty.

@@ -114,6 +114,11 @@ std::string encoded(const BodyModes& modes) {
     writer.put(round.modes);
     writer.put(round.moved);
   }
+  writer.put_all(Eigen::VectorXd{modes.estimate.kappa_rad_per_m.matrix()});
+  const std::string& reason = modes.estimate.not_estimated;
+  writer.put_all(Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>{
+      reason.data(), static_cast<Eigen::Index>(reason.size())});
+  writer.put(modes.estimate.seconds);
   return writer.take();
 }
 
@@ -139,6 +144,13 @@ std::optional<BodyModes> decoded(const std::string& bytes) {
     reader.get(round.moved);
     modes.report.refinement.push_back(round);
   }
+  Eigen::VectorXd larger;
+  reader.get_all(larger);
+  modes.estimate.kappa_rad_per_m = larger;
+  Eigen::Matrix<char, Eigen::Dynamic, 1> reason;
+  reader.get_all(reason);
+  reader.get(modes.estimate.seconds);
+  modes.estimate.not_estimated.assign(reason.begin(), reason.end());
   return reader.is_good_and_done() ? std::optional{modes} : std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -91,6 +92,30 @@ ModalModel model_of(const BodyModes& body, const Material& material, double band
   model.touch_surface = body.touch_surface;
   model.shape = body.shape.leftCols(modes) / std::sqrt(material.density_kg_per_m3);
   return model;
+}
+
+FrequencyErrors frequency_errors(const BodyModes& body, const Material& material,
+                                 double band_limit_hz) {
+  const double unit = kappa_rad_per_m(1.0, material);
+  const auto below = [&](const Eigen::ArrayXd& kappa) {
+    return (kappa / unit < band_limit_hz).count();
+  };
+  const Eigen::Index modes = below(body.kappa_rad_per_m);
+  const Eigen::ArrayXd& larger = body.estimate.kappa_rad_per_m;
+  FrequencyErrors errors;
+  errors.not_estimated = body.estimate.not_estimated;
+  errors.modes_at_least = static_cast<int>(modes);
+  if (errors.not_estimated.empty() && larger.size() >= modes) {
+    errors.relative = (body.kappa_rad_per_m.head(modes) / larger.head(modes) - 1.0).max(0.0);
+    errors.modes_at_least = static_cast<int>(std::max(modes, below(larger)));
+  }
+  return errors;
+}
+
+std::string describe_error(double relative) {
+  constexpr double known_up_to = 0.5;
+  return relative > known_up_to ? fmt::format("over {:.0f} %", 100.0 * known_up_to)
+                                : fmt::format("{:.2g} %", 100.0 * relative);
 }
 
 PlateModel build_plate_model(const PlateSpec& plate, const ProgressHook& progress) {

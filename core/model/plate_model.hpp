@@ -16,6 +16,18 @@ ModalModel model_of(const BodyModes& body, const Material& material, double band
                     const Joints* joints = nullptr);
 ModalModel model_of(const BodyModes& body, const PlateSpec& plate);
 
+// The estimated discretisation error of a body's frequencies in a material.
+struct FrequencyErrors {
+  Eigen::ArrayXd relative;    // of each mode in the band: f / f' - 1, f' of the next element order
+  int modes_at_least{};       // in the band, by the next element order
+  std::string not_estimated;  // why `relative` is empty
+  double largest() const { return relative.size() > 0 ? relative.maxCoeff() : 0.0; }
+};
+FrequencyErrors frequency_errors(const BodyModes& body, const Material& material,
+                                 double band_limit_hz);
+// "3.2 %"; "over 50 %" beyond what the next element order can tell.
+std::string describe_error(double relative);
+
 struct PlateModel {
   ModalModel modal;
   SolvedBody body;

@@ -75,7 +75,7 @@ std::string kind_of_model(const core::ModelReport& report, bool is_beam) {
 }
 
 void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
-  bool are_linear = false;
+  std::string warnings;
   fmt::print("\nmodels\n");
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
     if (!stimulus.technique->needs_model()) {
@@ -90,16 +90,21 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
     const std::string cost =
         cost_of(report, models.bodies_solved() > solved_before, models.bodies_used() > used_before);
     const bool is_beam = stimulus.technique->needs_beam();
-    are_linear = are_linear || (!is_beam && report.order == 1);
     fmt::print("  {}: {}, {}, {}\n", stimulus.name, kind_of_model(report, is_beam),
                describe_frequencies(plate->model.frequency_hz, protocol.band_limit_hz), cost);
+    if (!is_beam) {
+      const core::FrequencyErrors errors =
+          core::frequency_errors(*body, plate_spec(protocol, own).material, protocol.band_limit_hz);
+      fmt::print("    {}\n", describe_errors(errors));
+      const Eigen::Index unfelt = modes_out_of_reach(*plate, own);
+      if (unfelt > 0) {
+        fmt::print("    {} of the modes hardly move at any tapping point (1 % of the strongest)\n",
+                   unfelt);
+      }
+      warnings += warning_of_errors(stimulus.name, errors);
+    }
   }
-  if (are_linear) {
-    fmt::print(
-        "  warning: linear tetrahedra are too stiff in bending, the more the thinner the plate and "
-        "the coarser the mesh: frequencies may be several times too high (mesh: {{order: 2}}; "
-        "{{accuracy: 0.02}} refines until they hold still)\n");
-  }
+  fmt::print("{}", warnings);
   warn_of_overdamped_modes(protocol, models);
   warn_of_light_plates(protocol, models);
   if (models.bodies_used() == 0) {

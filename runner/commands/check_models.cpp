@@ -117,19 +117,37 @@ Strike strongest(const core::VibratingPlate& plate, const protocols::PresentedSt
 }
 }  // namespace
 
-double impact_energy_share(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m,
-                           double finger_kg) {
+namespace {
+// Each mode's displacement along the normal where the plate is met from above [kg^-1/2]; 0 where it
+// is not.
+Eigen::RowVectorXd modes_at(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m) {
+  Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(plate.model.shape.cols());
   const core::Contact contact = contact_from_above(plate, at_m);
   if (plate.triangles && contact.triangle == core::TriangleTree::none) {
-    return 0.0;
+    return along;
   }
   const core::SurfacePoint place = plate.place_of(contact);
-  Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(plate.model.shape.cols());
   for (std::size_t i = 0; i < place.count; ++i) {
     const auto rows = plate.model.shape.middleRows<3>(3 * Eigen::Index{place.nodes[i]});
     along += place.weights[i] * (contact.normal.transpose() * rows);
   }
-  return finger_kg * along.squaredNorm();
+  return along;
+}
+}  // namespace
+
+double impact_energy_share(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m,
+                           double finger_kg) {
+  return finger_kg * modes_at(plate, at_m).squaredNorm();
+}
+
+Eigen::Index modes_out_of_reach(const core::VibratingPlate& plate,
+                                const protocols::PresentedStimulus& stimulus) {
+  constexpr double still = 0.01;
+  Eigen::RowVectorXd most = Eigen::RowVectorXd::Zero(plate.model.shape.cols());
+  for (const auto& [name, at_m] : stimulus.plate->tapping_points_m) {
+    most = most.cwiseMax(modes_at(plate, at_m).cwiseAbs());
+  }
+  return most.size() == 0 ? 0 : (most.array() <= still * most.maxCoeff()).count();
 }
 
 void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& models) {
@@ -212,5 +230,33 @@ void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& m
                             : fmt::format("{} of {} modes are lost, at {} Hz", lost.size(),
                                           frequencies_hz.size(), fmt::join(lost, ", ")));
   }
+}
+
+namespace {
+constexpr double tolerated_error = 0.05;  // of a frequency
+}  // namespace
+
+std::string describe_errors(const core::FrequencyErrors& errors) {
+  if (!errors.not_estimated.empty()) {
+    return fmt::format("error of the frequencies not estimated: {}", errors.not_estimated);
+  }
+  const std::string missing =
+      errors.modes_at_least > errors.relative.size()
+          ? fmt::format(", and at least {} in the band",
+                        counted(static_cast<std::size_t>(errors.modes_at_least), "mode"))
+          : "";
+  return fmt::format("frequencies too high by {} at most, by elements of the next order{}",
+                     core::describe_error(errors.largest()), missing);
+}
+
+std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors) {
+  const bool is_missing = errors.modes_at_least > errors.relative.size();
+  if (errors.not_estimated.empty() && errors.largest() <= tolerated_error && !is_missing) {
+    return {};
+  }
+  return fmt::format(
+      "  warning: {}: {} (mesh: order 2, a smaller max_tet_volume_m3 or less flattening; "
+      "accuracy: 0.02 refines until they hold still)\n",
+      stimulus, describe_errors(errors));
 }
 }  // namespace tapstudy::runner

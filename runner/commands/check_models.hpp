@@ -12,6 +12,10 @@ void print_families(const protocols::Protocol& protocol, ModelLibrary& models);
 // finger gives more than it has. at_m: on the plate from above, plate frame.
 double impact_energy_share(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m,
                            double finger_kg);
+// How many modes of the band move, at every tapping point, by a hundredth or less of what the mode
+// that moves most there does: what the model spends on modes that nobody taps.
+Eigen::Index modes_out_of_reach(const core::VibratingPlate& plate,
+                                const protocols::PresentedStimulus& stimulus);
 // Prints a warning for each stimulus with a tapping point where it is above 1, and one for each
 // that can move as a rigid body, which no technique renders.
 void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& models);
@@ -21,4 +25,9 @@ void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& mod
 // response to a vibration is below a half. Nothing of a rig that has neither.
 void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& models,
                             const protocols::Rig& rig);
+
+// One line about the discretisation error of a model's frequencies.
+std::string describe_errors(const core::FrequencyErrors& errors);
+// Beyond 5 %, or where modes are missing, or nothing is known: a warning with its cure; else empty.
+std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors);
 }  // namespace tapstudy::runner

@@ -10,6 +10,7 @@
 #include "core/files/output_files.hpp"
 #include "core/model/vtu_file.hpp"
 #include "protocols/reader/read_protocol.hpp"
+#include "runner/commands/check_models.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/commands/shared_options.hpp"
 #include "runner/session/stimuli/model_library.hpp"
@@ -33,7 +34,23 @@ double peak_memory_bytes() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-void print_json(const protocols::PresentedStimulus& stimulus, const core::PlateModel& plate) {
+core::FrequencyErrors errors_of(const core::PlateModel& plate, const core::PlateSpec& spec) {
+  return core::frequency_errors(plate.body.modes, spec.material, spec.band_limit_hz);
+}
+
+// Without an estimate: why.
+void add_errors(const core::FrequencyErrors& errors, nlohmann::ordered_json& json) {
+  if (errors.not_estimated.empty()) {
+    json["estimated_relative_errors"] =
+        std::vector<double>(errors.relative.begin(), errors.relative.end());
+    json["modes_in_band_at_least"] = errors.modes_at_least;
+  } else {
+    json["errors_not_estimated"] = errors.not_estimated;
+  }
+}
+
+void print_json(const protocols::PresentedStimulus& stimulus, const core::PlateModel& plate,
+                const core::PlateSpec& spec) {
   const core::ModelReport& report = plate.body.modes.report;
   nlohmann::ordered_json json{{"schema_version", 1}, {"stimulus", stimulus.name}};
   if (!stimulus.values.empty()) {
@@ -43,6 +60,9 @@ void print_json(const protocols::PresentedStimulus& stimulus, const core::PlateM
       std::vector<double>(plate.modal.frequency_hz.begin(), plate.modal.frequency_hz.end());
   json["damping_ratios"] =
       std::vector<double>(plate.modal.damping_ratio.begin(), plate.modal.damping_ratio.end());
+  if (!stimulus.technique->needs_beam()) {
+    add_errors(errors_of(plate, spec), json);
+  }
   if (stimulus.contacts) {
     const auto share = plate.body.modes.kinetic_share.row(0);
     json["kinetic_energy_in_plate"] = std::vector<double>(share.begin(), share.end());
@@ -58,11 +78,10 @@ void print_json(const protocols::PresentedStimulus& stimulus, const core::PlateM
   json["rigid_body_modes"] = report.rigid_body_modes;
   json["modes_in_band_by_inertia"] = report.counted_in_band;
   json["worst_residual"] = report.worst_residual;
-  json["seconds"] = {{"mesh", report.cost.mesh_s},
-                     {"assemble", report.cost.assemble_s},
-                     {"factor", report.cost.factor_s},
-                     {"iterate", report.cost.iterate_s},
-                     {"total", report.cost.total_s()}};
+  json["seconds"] = {
+      {"mesh", report.cost.mesh_s},     {"assemble", report.cost.assemble_s},
+      {"factor", report.cost.factor_s}, {"iterate", report.cost.iterate_s},
+      {"total", report.cost.total_s()}, {"error_estimate", plate.body.modes.estimate.seconds}};
   json["peak_memory_bytes"] = peak_memory_bytes();
   for (const core::RefinementRound& round : report.refinement) {
     json["refinement"].push_back({{"elements", round.tets}, {"modes", round.modes}});
@@ -104,7 +123,22 @@ void print_completeness(const core::ModelReport& report, double band_limit_hz) {
   fmt::print("; worst residual {:.1e}\n", report.worst_residual);
 }
 
-void print_table(const protocols::PresentedStimulus& stimulus, const protocols::Protocol& protocol,
+void print_modes(const core::PlateModel& plate, const core::FrequencyErrors& errors,
+                 bool are_joined) {
+  const bool has_errors = errors.relative.size() > 0;
+  fmt::print("  mode  frequency_hz{}  damping_ratio{}\n", has_errors ? "  error_up_by" : "",
+             are_joined ? "  in_plate" : "");
+  for (Eigen::Index i = 0; i < plate.modal.frequency_hz.size(); ++i) {
+    fmt::print("  {:>4}  {:>12.3f}{}  {:>13.4f}{}\n", i + 1, plate.modal.frequency_hz[i],
+               has_errors ? fmt::format("  {:>11}", core::describe_error(errors.relative[i]))
+                          : std::string{},
+               plate.modal.damping_ratio[i],
+               are_joined ? fmt::format("  {:>8.3f}", plate.body.modes.kinetic_share(0, i))
+                          : std::string{});
+  }
+}
+
+void print_table(const protocols::PresentedStimulus& stimulus, const core::PlateSpec& spec,
                  const core::PlateModel& plate) {
   const core::ModelReport& report = plate.body.modes.report;
   const bool is_beam = stimulus.technique->needs_beam();
@@ -121,15 +155,12 @@ void print_table(const protocols::PresentedStimulus& stimulus, const protocols::
                stimulus.contacts->bodies.size() + 1);
   }
   print_refinement(report);
-  fmt::print("  mode  frequency_hz  damping_ratio{}\n", stimulus.contacts ? "  in_plate" : "");
-  for (Eigen::Index i = 0; i < plate.modal.frequency_hz.size(); ++i) {
-    fmt::print(
-        "  {:>4}  {:>12.3f}  {:>13.4f}{}\n", i + 1, plate.modal.frequency_hz[i],
-        plate.modal.damping_ratio[i],
-        stimulus.contacts ? fmt::format("  {:>8.3f}", plate.body.modes.kinetic_share(0, i)) : "");
-  }
+  const core::FrequencyErrors errors = errors_of(plate, spec);
+  print_modes(plate, errors, stimulus.contacts != nullptr);
   if (!is_beam) {
-    print_completeness(report, protocol.band_limit_hz);
+    print_completeness(report, spec.band_limit_hz);
+    fmt::print("  {}\n", describe_errors(errors));
+    fmt::print("{}", warning_of_errors(stimulus.name, errors));
   }
 }
 
@@ -185,9 +216,9 @@ void run_modes(const ModesOptions& options) {
     draw_modes(options, spec.shape, plate.modal);
   }
   if (options.wants_json) {
-    print_json(stimulus, plate);
+    print_json(stimulus, plate, spec);
   } else {
-    print_table(stimulus, protocol, plate);
+    print_table(stimulus, spec, plate);
   }
 }
 }  // namespace

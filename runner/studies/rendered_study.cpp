@@ -151,6 +151,10 @@ std::vector<double> listed(const Eigen::ArrayXd& values) {
   return {values.begin(), values.end()};
 }
 
+std::optional<double> largest_error(const core::FrequencyErrors& errors) {
+  return errors.relative.size() > 0 ? std::optional{errors.largest()} : std::nullopt;
+}
+
 std::optional<RenderedModel> model_of(const Protocol& protocol, const Stimulus& stimulus,
                                       const core::ModelCache& cache) {
   if (!stimulus.technique->needs_model()) {
@@ -165,7 +169,8 @@ std::optional<RenderedModel> model_of(const Protocol& protocol, const Stimulus& 
                        found->report.order,
                        found->report.nodes,
                        found->report.tets,
-                       found->report.worst_residual};
+                       found->report.worst_residual,
+                       largest_error(found->errors)};
 }
 
 RenderedStimulus describe_stimulus(const Protocol& protocol, const Stimulus& stimulus,

@@ -96,7 +96,7 @@ ReportTable models_table(const RenderedStudy& study) {
        column("E, GPa", "youngs_modulus_pa"), column("kg/m³", "density_kg_per_m3"),
        column("modes", "modes"), column("frequencies, Hz", "first_modes"),
        column("elements", "elements"), column("nodes", "nodes"), column("order", "order"),
-       column("residual", "worst_residual")}};
+       column("residual", "worst_residual"), column("error", "estimated_relative_error")}};
   for (const RenderedStimulus& stimulus : study.stimuli) {
     std::vector<Cell> row{
         named(stimulus),
@@ -107,7 +107,8 @@ ReportTable models_table(const RenderedStudy& study) {
       const RenderedModel& model = *stimulus.model;
       row.insert(row.end(), {count(static_cast<std::int64_t>(model.frequencies_hz.size())),
                              word(first_modes(model)), count(model.tets), count(model.nodes),
-                             count(model.order), number(model.worst_residual, 2)});
+                             count(model.order), number(model.worst_residual, 2),
+                             number(model.estimated_error)});
     } else {
       for (std::size_t i = row.size(); i < table.columns.size(); ++i) {
         row.push_back(nothing(table.columns[i]));

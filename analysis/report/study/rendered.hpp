@@ -28,6 +28,9 @@ struct RenderedModel {
   int nodes{};
   int tets{};
   double worst_residual{};  // of the eigenpairs
+  // The largest estimated relative error of a frequency, by elements of the next order; unset: not
+  // estimated, or there is no mode.
+  std::optional<double> estimated_error{};
 };
 
 // A stimulus in words, as the protocol has it.

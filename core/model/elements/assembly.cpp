@@ -258,6 +258,30 @@ TetCorners corners_of(const TetMesh& mesh, Eigen::Index tet) {
   return corners;
 }
 
+// Of an unknown of an edge, whose function runs from the corner of the lower number: -1 where the
+// element names the other corner first.
+double sign_of(const TetMesh& mesh, Eigen::Index tet, Eigen::Index unknown) {
+  constexpr Eigen::Index first_edge = 10;
+  const Eigen::Index edge = unknown - first_edge;
+  if (edge < 0 || edge >= static_cast<Eigen::Index>(tet_edges.size())) {
+    return 1.0;
+  }
+  const auto& [from, to] = tet_edges.at(static_cast<std::size_t>(edge));
+  return mesh.tets(tet, from) < mesh.tets(tet, to) ? 1.0 : -1.0;
+}
+
+template <int Nodes>
+void orient_edges(const TetMesh& mesh, Eigen::Index tet, TetElement<Nodes>& element) {
+  for (Eigen::Index i = 0; i < Nodes; ++i) {
+    if (sign_of(mesh, tet, i) < 0.0) {
+      element.stiffness.template middleRows<3>(3 * i) *= -1.0;
+      element.stiffness.template middleCols<3>(3 * i) *= -1.0;
+      element.mass.row(i) *= -1.0;
+      element.mass.col(i) *= -1.0;
+    }
+  }
+}
+
 template <int Nodes>
 void add_elements(const TetMesh& mesh, const Material& material, const Pattern& pattern,
                   StiffnessAndMass& matrices) {
@@ -265,7 +289,8 @@ void add_elements(const TetMesh& mesh, const Material& material, const Pattern& 
     if (!(tet_volume_m3(mesh, tet) > 0.0)) {
       throw ModelError{fmt::format("mesh: tetrahedron {} has no volume", tet)};
     }
-    const TetElement<Nodes> element = tet_element<Nodes>(corners_of(mesh, tet), material);
+    TetElement<Nodes> element = tet_element<Nodes>(corners_of(mesh, tet), material);
+    orient_edges<Nodes>(mesh, tet, element);
     for (Eigen::Index j = 0; j < Nodes; ++j) {
       for (Eigen::Index i = 0; i < Nodes; ++i) {
         if (mesh.tets(tet, i) >= mesh.tets(tet, j)) {
@@ -307,7 +332,9 @@ StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const F
   check_material(material);
   const Pattern pattern{mesh, dofs};
   StiffnessAndMass matrices = pattern.empty_matrices();
-  if (mesh.order() == 2) {
+  if (mesh.order() == 3) {
+    add_elements<20>(mesh, material, pattern, matrices);
+  } else if (mesh.order() == 2) {
     add_elements<10>(mesh, material, pattern, matrices);
   } else {
     add_elements<4>(mesh, material, pattern, matrices);

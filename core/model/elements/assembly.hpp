@@ -32,7 +32,7 @@ struct StiffnessAndMass {
   auto mass() const { return M.selfadjointView<Eigen::Lower>(); }
 };
 
-// Linear elasticity with consistent mass, for meshes of order 1 and 2, and the springs that hold
+// Linear elasticity with consistent mass, for meshes of order 1 to 3, and the springs that hold
 // the body to the ground. Throws ModelError if a tetrahedron has no volume.
 StiffnessAndMass assemble(const TetMesh& mesh, const Material& material, const FreeDofs& dofs,
                           const std::vector<SpringSupport>& springs = {});

@@ -15,14 +15,24 @@ using Corners = std::array<Barycentric, 3>;
 constexpr int least_divisions = 2;
 constexpr int most_divisions = 6;
 
-// Linear, or quadratic with mid-side nodes of the edges 01 12 20.
-Eigen::VectorXd shape_functions(const Barycentric& at, Eigen::Index nodes) {
-  if (nodes == 3) {
+// Linear; quadratic with mid-side nodes of the edges 01 12 20; or cubic, with the functions of
+// these edges, from the corner of the lower number, and of the face (TetElement<20>).
+Eigen::VectorXd shape_functions(const Barycentric& at, const TetMesh::Indices& surface,
+                                Eigen::Index triangle) {
+  if (surface.cols() == 3) {
     return at;
   }
-  Eigen::VectorXd shape(6);
+  Eigen::VectorXd shape(surface.cols());
   shape.head<3>() = at.array() * (2.0 * at.array() - 1.0);
-  shape.tail<3>() = 4.0 * Eigen::Vector3d{at[0] * at[1], at[1] * at[2], at[2] * at[0]};
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index j = (i + 1) % 3;
+    shape[3 + i] = 4.0 * at[i] * at[j];
+    if (surface.cols() == 10) {
+      const double sign = surface(triangle, i) < surface(triangle, j) ? 1.0 : -1.0;
+      shape[6 + i] = sign * at[i] * at[j] * (at[i] - at[j]);
+      shape[9] = at.prod();
+    }
+  }
   return shape;
 }
 
@@ -39,12 +49,12 @@ constexpr std::array<Orbit, 2> quadrature{Orbit{0.223381589678011, 0.10810301816
 class PartIntegral {
  public:
   PartIntegral(const TetMesh& mesh, Eigen::Index triangle, const SurfaceRegion& region)
-      : region_{region}, nodes_{mesh.surface.cols()} {
+      : region_{region}, surface_{mesh.surface} {
     for (Eigen::Index corner = 0; corner < 3; ++corner) {
       corners_m_.col(corner) = mesh.nodes_m.row(mesh.surface(triangle, corner)).transpose();
     }
     part_.triangle = triangle;
-    part_.products_m2 = Eigen::MatrixXd::Zero(nodes_, nodes_);
+    part_.products_m2 = Eigen::MatrixXd::Zero(surface_.cols(), surface_.cols());
     add({Barycentric::UnitX(), Barycentric::UnitY(), Barycentric::UnitZ()},
         triangle_area_m2(mesh, triangle), 0);
   }
@@ -83,14 +93,14 @@ class PartIntegral {
       for (std::size_t first = 0; first < 3; ++first) {
         const Barycentric at = orbit.major * corners.at(first) +
                                minor * (corners.at((first + 1) % 3) + corners.at((first + 2) % 3));
-        const Eigen::VectorXd shape = shape_functions(at, nodes_);
+        const Eigen::VectorXd shape = shape_functions(at, surface_, part_.triangle);
         part_.products_m2 += orbit.weight * area_m2 * shape * shape.transpose();
       }
     }
   }
 
   const SurfaceRegion& region_;
-  Eigen::Index nodes_;
+  const TetMesh::Indices& surface_;
   Eigen::Matrix3d corners_m_;
   TrianglePart part_;
 };

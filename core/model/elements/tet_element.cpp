@@ -1,7 +1,9 @@
 #include "core/model/elements/tet_element.hpp"
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/model/mesh/tet_mesh.hpp"
 namespace tapstudy::core {
@@ -120,6 +122,126 @@ TetElement<10> tet_element<10>(const TetCorners& corners_m, const Material& mate
   mirror_lower(element);
   static const Eigen::Matrix<double, 10, 10> mass = quadratic_mass();
   element.mass = material.density_kg_per_m3 * volume / 420.0 * mass;
+  return element;
+}
+
+namespace {
+// A polynomial in the barycentric coordinates: the sum of factor l_0^p l_1^q l_2^r l_3^s.
+struct Term {
+  double factor{};
+  std::array<int, 4> powers{};
+};
+using Polynomial = std::vector<Term>;
+
+Polynomial product(const Polynomial& a, const Polynomial& b) {
+  Polynomial result;
+  for (const Term& x : a) {
+    for (const Term& y : b) {
+      Term term{x.factor * y.factor, x.powers};
+      for (std::size_t i = 0; i < 4; ++i) {
+        term.powers.at(i) += y.powers.at(i);
+      }
+      result.push_back(term);
+    }
+  }
+  return result;
+}
+
+Polynomial derivative(const Polynomial& of, std::size_t along) {
+  Polynomial result;
+  for (Term term : of) {
+    term.factor *= term.powers.at(along);
+    term.powers.at(along) -= 1;
+    if (term.factor != 0.0) {
+      result.push_back(term);
+    }
+  }
+  return result;
+}
+
+// Over a tetrahedron of volume 1: 6 p! q! r! s! / (p + q + r + s + 3)! for each term.
+double integral(const Polynomial& of) {
+  double sum = 0.0;
+  for (const auto& [factor, powers] : of) {
+    double numerator = 6.0;
+    int all = 3;
+    for (const int power : powers) {
+      numerator *= std::tgamma(power + 1.0);
+      all += power;
+    }
+    sum += factor * numerator / std::tgamma(all + 1.0);
+  }
+  return sum;
+}
+
+Polynomial coordinate(int corner, double factor = 1.0) {
+  Term term{factor, {}};
+  term.powers.at(static_cast<std::size_t>(corner)) = 1;
+  return {term};
+}
+
+std::vector<Polynomial> cubic_functions() {
+  std::vector<Polynomial> functions;
+  for (int i = 0; i < 4; ++i) {
+    functions.push_back(product(coordinate(i), {coordinate(i, 2.0)[0], {-1.0, {}}}));
+  }
+  for (const auto& [i, j] : tet_edges) {
+    functions.push_back(product(coordinate(i, 4.0), coordinate(j)));
+  }
+  for (const auto& [i, j] : tet_edges) {
+    functions.push_back(
+        product(product(coordinate(i), coordinate(j)), {coordinate(i)[0], coordinate(j, -1.0)[0]}));
+  }
+  for (const auto& [i, j, k] : tet_faces) {
+    functions.push_back(product(product(coordinate(i), coordinate(j)), coordinate(k)));
+  }
+  return functions;
+}
+
+// What the element matrices have in common, for a tetrahedron of volume 1: the integrals of
+// N_a N_b, and of the derivatives of N_a by l_i times that of N_b by l_j.
+struct CubicIntegrals {
+  Eigen::Matrix<double, 20, 20> mass;
+  std::array<std::array<Eigen::Matrix4d, 20>, 20> slopes;
+};
+
+CubicIntegrals cubic_integrals() {
+  const std::vector<Polynomial> functions = cubic_functions();
+  CubicIntegrals result;
+  for (std::size_t a = 0; a < 20; ++a) {
+    for (std::size_t b = 0; b < 20; ++b) {
+      result.mass(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
+          integral(product(functions[a], functions[b]));
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+          result.slopes.at(a).at(b)(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+              integral(product(derivative(functions[a], i), derivative(functions[b], j)));
+        }
+      }
+    }
+  }
+  return result;
+}
+}  // namespace
+
+template <>
+TetElement<20> tet_element<20>(const TetCorners& corners_m, const Material& material) {
+  static const CubicIntegrals integrals = cubic_integrals();
+  const auto [volume, gradients] = geometry_of(corners_m);
+  const Lame lame = lame_of(material);
+  TetElement<20> element;
+  for (Eigen::Index b = 0; b < 20; ++b) {
+    for (Eigen::Index a = b; a < 20; ++a) {
+      const Eigen::Matrix4d& slopes =
+          integrals.slopes.at(static_cast<std::size_t>(a)).at(static_cast<std::size_t>(b));
+      const Eigen::Matrix3d products = volume * gradients.transpose() * slopes * gradients;
+      Eigen::Matrix3d block = lame.lambda * products + lame.shear * products.transpose();
+      block.diagonal().array() += lame.shear * products.trace();
+      element.stiffness.block<3, 3>(3 * a, 3 * b) = block;
+    }
+  }
+  mirror_lower(element);
+  element.mass = material.density_kg_per_m3 * volume * integrals.mass;
   return element;
 }
 }  // namespace tapstudy::core

@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "core/model/elements/assembly.hpp"
 #include "core/model/elements/spring_support.hpp"
+#include "core/model/error_estimate.hpp"
 #include "core/model/joints/joints.hpp"
 #include "core/model/modes/modal_solver.hpp"
 namespace tapstudy::core {
@@ -313,6 +314,7 @@ SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progres
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
   set_energy_shares(system, body.joints->springs.size(), modes, solved.modes);
   solved.modes.report = report_on(system.bodies, modes);
+  solved.modes.estimate = estimate_error(body, system, modes, progress);
   DiscreteBody& tapped = system.bodies.front();
   solved.displacement = with_constrained_rows(modes.shapes.topRows(tapped.dofs.count), tapped.dofs);
   solved.mesh = std::move(tapped.mesh);

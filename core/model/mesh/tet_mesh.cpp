@@ -94,19 +94,66 @@ std::vector<Edge> edges_of(const TetMesh& mesh) {
   return edges;
 }
 
-// The rows with the mid-side nodes of their first `count` edges appended to the corners.
-TetMesh::Indices with_edge_midpoints(const TetMesh::Indices& corners, std::size_t count,
-                                     const std::vector<Edge>& edges, int first_middle) {
-  TetMesh::Indices rows{corners.rows(), corners.cols() + static_cast<Eigen::Index>(count)};
-  rows.leftCols(corners.cols()) = corners;
-  for (Eigen::Index row = 0; row < corners.rows(); ++row) {
+using Face = std::array<int, 3>;  // ascending
+
+Face face_of(const TetMesh::Indices& corners, Eigen::Index row, const Face& ends) {
+  Face face{corners(row, ends[0]), corners(row, ends[1]), corners(row, ends[2])};
+  std::ranges::sort(face);
+  return face;
+}
+
+std::vector<Face> faces_of(const TetMesh& mesh) {
+  std::vector<Face> faces;
+  faces.reserve(tet_faces.size() * static_cast<std::size_t>(mesh.tets.rows()));
+  for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {
+    for (const Face& ends : tet_faces) {
+      faces.push_back(face_of(mesh.tets, tet, ends));
+    }
+  }
+  std::ranges::sort(faces);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
+// The rows with a number for each of their first `count` edges appended.
+TetMesh::Indices with_edges(const TetMesh::Indices& nodes, std::size_t count,
+                            const std::vector<Edge>& edges, Eigen::Index first) {
+  TetMesh::Indices rows{nodes.rows(), nodes.cols() + static_cast<Eigen::Index>(count)};
+  rows.leftCols(nodes.cols()) = nodes;
+  for (Eigen::Index row = 0; row < nodes.rows(); ++row) {
     for (std::size_t i = 0; i < count; ++i) {
-      const auto found = std::ranges::lower_bound(edges, edge_of(corners, row, tet_edges.at(i)));
-      rows(row, corners.cols() + static_cast<Eigen::Index>(i)) =
-          first_middle + static_cast<int>(found - edges.begin());
+      const auto found = std::ranges::lower_bound(edges, edge_of(nodes, row, tet_edges.at(i)));
+      rows(row, nodes.cols() + static_cast<Eigen::Index>(i)) =
+          static_cast<int>(first + (found - edges.begin()));
     }
   }
   return rows;
+}
+
+// Likewise for each of their first `count` faces; their corners are their first columns.
+TetMesh::Indices with_faces(const TetMesh::Indices& nodes, std::size_t count,
+                            const std::vector<Face>& faces, Eigen::Index first) {
+  TetMesh::Indices rows{nodes.rows(), nodes.cols() + static_cast<Eigen::Index>(count)};
+  rows.leftCols(nodes.cols()) = nodes;
+  for (Eigen::Index row = 0; row < nodes.rows(); ++row) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto found = std::ranges::lower_bound(faces, face_of(nodes, row, tet_faces.at(i)));
+      rows(row, nodes.cols() + static_cast<Eigen::Index>(i)) =
+          static_cast<int>(first + (found - faces.begin()));
+    }
+  }
+  return rows;
+}
+
+// The nodes, and after them the middle of each of these edges or faces.
+template <class Corners>
+void append_middles(const std::vector<Corners>& all, TetMesh& mesh) {
+  const Eigen::Index before = mesh.nodes_m.rows();
+  mesh.nodes_m.conservativeResize(before + static_cast<Eigen::Index>(all.size()), 3);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    mesh.nodes_m.row(before + static_cast<Eigen::Index>(i)) =
+        mesh.nodes_m(all[i], Eigen::all).colwise().mean();
+  }
 }
 }  // namespace
 
@@ -120,8 +167,21 @@ TetMesh to_quadratic(const TetMesh& mesh) {
     result.nodes_m.row(corners + static_cast<Eigen::Index>(i)) =
         0.5 * (mesh.nodes_m.row(edges[i][0]) + mesh.nodes_m.row(edges[i][1]));
   }
-  result.tets = with_edge_midpoints(mesh.tets, 6, edges, static_cast<int>(corners));
-  result.surface = with_edge_midpoints(mesh.surface, 3, edges, static_cast<int>(corners));
+  result.tets = with_edges(mesh.tets, 6, edges, corners);
+  result.surface = with_edges(mesh.surface, 3, edges, corners);
+  return result;
+}
+
+TetMesh to_hierarchic_cubic(const TetMesh& mesh) {
+  const std::vector<Edge> edges = edges_of(mesh);
+  const std::vector<Face> faces = faces_of(mesh);
+  TetMesh result{mesh.nodes_m, {}, {}};
+  append_middles(edges, result);
+  append_middles(faces, result);
+  const Eigen::Index first_edge = mesh.nodes_m.rows();
+  const auto first_face = first_edge + static_cast<Eigen::Index>(edges.size());
+  result.tets = with_faces(with_edges(mesh.tets, 6, edges, first_edge), 4, faces, first_face);
+  result.surface = with_faces(with_edges(mesh.surface, 3, edges, first_edge), 1, faces, first_face);
   return result;
 }
 }  // namespace tapstudy::core

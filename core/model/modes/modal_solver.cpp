@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -157,8 +158,9 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
   const double band = 2.0 * std::numbers::pi * band_limit_hz;
   Stopwatch watch;
   tell(progress, "factorising");
-  const ShiftedFactor factor{matrices, band * band};
   Modes modes;
+  modes.factor = std::make_shared<const ShiftedFactor>(matrices, band * band);
+  const ShiftedFactor& factor = *modes.factor;
   modes.counted_in_band = factor.eigenvalues_below();
   modes.factor_s = watch.lap_s();
   const int count = modes.counted_in_band;
@@ -190,6 +192,7 @@ Modes solve_modes(const StiffnessAndMass& matrices, double band_limit_hz,
   const Eigen::Index kept = count - modes.rigid_body_modes;
   modes.omega_rad_s = pairs.values.tail(kept).array().sqrt();
   modes.shapes = pairs.vectors.rightCols(kept);
+  modes.rigid_shapes = pairs.vectors.leftCols(modes.rigid_body_modes);
   fix_signs(modes.shapes);
   modes.iterate_s = watch.lap_s();
   return modes;

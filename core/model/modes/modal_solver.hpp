@@ -1,7 +1,9 @@
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 
 #include "core/model/elements/assembly.hpp"
+#include "core/model/modes/shifted_factor.hpp"
 #include "core/model/progress.hpp"
 namespace tapstudy::core {
 // The natural modes of (K, M) from above zero up to a band limit: the solutions X of
@@ -11,11 +13,13 @@ struct Modes {
   Eigen::ArrayXd omega_rad_s;  // ascending; undamped natural angular frequencies
   Eigen::MatrixXd
       shapes;  // one column per mode, M-orthonormal [kg^-1/2], sign fixed: the paper's P (eq. 8)
-  int rigid_body_modes{0};     // at zero frequency, left out
-  int counted_in_band{0};      // by the inertia of K - sigma M, rigid-body modes included
-  double worst_residual{0.0};  // max over modes of |K x - w² M x| / (|K x| + w² |M x|)
+  int rigid_body_modes{0};       // at zero frequency, left out
+  Eigen::MatrixXd rigid_shapes;  // theirs, M-orthonormal
+  int counted_in_band{0};        // by the inertia of K - sigma M, rigid-body modes included
+  double worst_residual{0.0};    // max over modes of |K x - w² M x| / (|K x| + w² |M x|)
   double factor_s{0.0};
   double iterate_s{0.0};
+  std::shared_ptr<const ShiftedFactor> factor;  // at the band limit
 };
 
 // Exactly the modes below band_limit_hz: the factorisation of K - sigma M at the band limit gives

@@ -223,6 +223,8 @@ std::optional<CachedModel> cached_model(const protocols::Protocol& protocol,
   if (!body) {
     return std::nullopt;
   }
-  return CachedModel{core::model_of(*body, plate_spec(protocol, presented)), body->report};
+  const core::PlateSpec plate = plate_spec(protocol, presented);
+  return CachedModel{core::model_of(*body, plate), body->report,
+                     core::frequency_errors(*body, plate.material, plate.band_limit_hz)};
 }
 }  // namespace tapstudy::runner

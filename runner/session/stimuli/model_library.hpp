@@ -110,6 +110,7 @@ TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
 struct CachedModel {
   core::ModalModel modal;    // the modes in the band
   core::ModelReport report;  // of the body that it is scaled from
+  core::FrequencyErrors errors;
 };
 // Of a stimulus at its own values; nullopt: not in the cache. Nothing is computed but the scaling.
 std::optional<CachedModel> cached_model(const protocols::Protocol& protocol,

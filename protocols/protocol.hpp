@@ -212,6 +212,7 @@ struct Block {
   Order order{Order::shuffle};
   OrderConstraints constraints;
   bool is_practice{false};
+  bool is_fixed{false};        // in its place, whatever the order of the blocks
   bool gives_feedback{false};  // which answer was right
   std::string instructions;    // before its first trial; may be empty
   std::optional<Confidence> confidence;
@@ -232,7 +233,9 @@ bool do_skipped_trials_come_again(const Block& block);
 std::vector<std::string> all_presented(const Block& block);
 
 // How the blocks of a session follow one another: listed, shuffle or williams. Those named exchange
-// their places, each with the practice blocks directly before it; the others stay.
+// their places, each with the practice blocks directly before it; the others stay. Practice before
+// the first of all moves with it only where each block that moves has practice of its own; else it
+// is for all of them, and stays first.
 struct BlockOrder {
   Order order{Order::listed};
   std::vector<std::string> blocks;  // none of practice; empty: all

@@ -259,6 +259,9 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
   block.question = reader.translated({"question", "text that participants are asked"});
   read_presentations(reader, protocol, block);
   read_practice(reader, block);
+  block.is_fixed = reader.yes_or_no(
+      {"fixed", "stays in its place where block_order moves others, and practice for all of them"},
+      false);
   if (block.task != nullptr && block.task->uses_order()) {
     if (block.order == Order::listed || block.order == Order::williams) {
       reader.refuse("constraints", "are for random orders: this one is given");
@@ -326,7 +329,7 @@ void read_blocks(MapReader& top, Protocol& protocol) {
 void read_block_order(MapReader& top, Protocol& protocol) {
   std::vector<std::string> movable;
   for (const Block& block : protocol.blocks) {
-    if (!block.is_practice) {
+    if (!block.is_practice && !block.is_fixed) {
       movable.push_back(block.name);
     }
   }
@@ -340,10 +343,12 @@ void read_block_order(MapReader& top, Protocol& protocol) {
         chosen.blocks =
             reader.words({"blocks",
                           "those that exchange their places; the others stay where they are. A "
-                          "practice block moves with the block after it; unset: all but practice"},
-                         "block without practice", movable, movable);
+                          "practice block moves with the block after it; one that stands first "
+                          "does only where each of these has its own; unset: all but practice and "
+                          "fixed ones"},
+                         "block that may move (not practice, not fixed)", movable, movable);
         reader.check("blocks", chosen.blocks.size() >= 2, R"({"minItems": 2})",
-                     "are not two blocks or more, without counting practice");
+                     "are not two blocks or more, without practice and fixed ones");
       });
 }
 }  // namespace tapstudy::protocols

@@ -4,23 +4,52 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
+#include <utility>
 
 #include "protocols/schedule/ordering.hpp"
 namespace tapstudy::protocols {
 namespace {
-// A block with the practice before it, as places in the protocol's list; the last one may be
-// practice alone.
+// Blocks that stay together, as places in the protocol's list: a block with the practice that
+// belongs to it; practice that stays; a last one may be practice alone.
 using Unit = std::vector<std::size_t>;
 
-std::vector<Unit> units_of(const Protocol& protocol) {
+bool may_move(const Protocol& protocol, const Block& block) {
+  const std::vector<std::string>& named = protocol.block_order.blocks;
+  return !block.is_practice && !block.is_fixed &&
+         (named.empty() || std::ranges::find(named, block.name) != named.end());
+}
+
+// Each with the practice before it.
+std::vector<Unit> with_practice_before(const Protocol& protocol) {
   std::vector<Unit> units;
   bool is_new = true;
   for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
-    if (is_new) {
+    const Block& block = protocol.blocks[i];
+    if (is_new || block.is_fixed) {
       units.emplace_back();
     }
     units.back().push_back(i);
-    is_new = !protocol.blocks[i].is_practice;
+    is_new = !block.is_practice || block.is_fixed;
+  }
+  return units;
+}
+
+// The last block of those that stay together says whether they move.
+bool moves(const Protocol& protocol, const Unit& unit) {
+  return may_move(protocol, protocol.blocks[unit.back()]);
+}
+
+std::vector<Unit> units_of(const Protocol& protocol) {
+  std::vector<Unit> units = with_practice_before(protocol);
+  const bool has_each_its_own = std::ranges::all_of(
+      units, [&](const Unit& unit) { return !moves(protocol, unit) || unit.size() > 1; });
+  if (!units.empty() && units.front().size() > 1 && !has_each_its_own) {
+    Unit practice = units.front();
+    units.front() = {practice.back()};
+    practice.pop_back();
+    units.insert(units.begin(), practice);
   }
   return units;
 }
@@ -29,10 +58,7 @@ std::vector<Unit> units_of(const Protocol& protocol) {
 std::vector<std::size_t> moving(const Protocol& protocol, const std::vector<Unit>& units) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < units.size(); ++i) {
-    const Block& block = protocol.blocks[units[i].back()];
-    const std::vector<std::string>& named = protocol.block_order.blocks;
-    if (!block.is_practice &&
-        (named.empty() || std::ranges::find(named, block.name) != named.end())) {
+    if (moves(protocol, units[i])) {
       found.push_back(i);
     }
   }
@@ -78,18 +104,6 @@ std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t 
   return sequence;
 }
 
-std::map<std::string, int> first_trials(const Protocol& protocol, std::uint64_t participant_seed,
-                                        int order_index) {
-  std::map<std::string, int> first;
-  int next = 1;
-  for (const std::size_t i : block_sequence(protocol, participant_seed, order_index)) {
-    const Block& block = protocol.blocks[i];
-    first[block.name] = next;
-    next += planned_trials(block);
-  }
-  return first;
-}
-
 int balanced_block_orders(const Protocol& protocol) {
   return protocol.block_order.order == Order::williams
              ? williams_rows(static_cast<int>(moving(protocol, units_of(protocol)).size()))
@@ -108,9 +122,11 @@ Draw draw_of(std::uint64_t counterbalancing_seed, std::size_t block_index,
                              static_cast<std::uint64_t>(order_index))};
 }
 
-Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index) {
+namespace {
+Schedule scheduled(const Protocol& protocol, const std::vector<std::size_t>& sequence,
+                   std::uint64_t participant_seed, int order_index) {
   Schedule schedule;
-  for (const std::size_t i : block_sequence(protocol, participant_seed, order_index)) {
+  for (const std::size_t i : sequence) {
     const Block& block = protocol.blocks[i];
     const Draw draw = draw_of(protocol.counterbalancing_seed, i, participant_seed, order_index);
     for (PlannedTrial& trial : block.task->trials(block, draw)) {
@@ -119,6 +135,47 @@ Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed,
     }
   }
   return schedule;
+}
+
+// The number and the block that a line of described() begins with.
+std::pair<int, std::string> number_and_block(const std::string& line) {
+  std::istringstream words{line};
+  int number = 0;
+  std::string block;
+  words >> number >> block;
+  return {number, block};
+}
+}  // namespace
+
+Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index) {
+  return scheduled(protocol, block_sequence(protocol, participant_seed, order_index),
+                   participant_seed, order_index);
+}
+
+std::map<std::string, int> first_trials(const std::string& planned_order) {
+  std::map<std::string, int> first;
+  std::istringstream lines{planned_order};
+  for (std::string line; std::getline(lines, line);) {
+    const auto [number, block] = number_and_block(line);
+    first.emplace(block, number);
+  }
+  return first;
+}
+
+Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index,
+                       const std::string& planned_order) {
+  std::vector<std::pair<int, std::size_t>> places;  // by the first trial
+  for (const auto& [name, number] : first_trials(planned_order)) {
+    const auto block = std::ranges::find(protocol.blocks, name, &Block::name);
+    if (block != protocol.blocks.end()) {
+      places.emplace_back(number, static_cast<std::size_t>(block - protocol.blocks.begin()));
+    }
+  }
+  std::ranges::sort(places);
+  std::vector<std::size_t> sequence;
+  std::ranges::transform(places, std::back_inserter(sequence),
+                         &std::pair<int, std::size_t>::second);
+  return scheduled(protocol, sequence, participant_seed, order_index);
 }
 
 namespace {

@@ -13,6 +13,11 @@ using Schedule = std::vector<PlannedTrial>;
 // uses the participant index, from 0. The result does not depend on the compiler.
 Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index);
 
+// The same where the order of the blocks is stored already, as described(): other versions may have
+// drawn another one.
+Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index,
+                       const std::string& planned_order);
+
 // How many trials a participant has of it.
 int planned_trials(const Block& block);
 
@@ -28,9 +33,8 @@ std::string described(const Schedule& schedule);
 std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t participant_seed,
                                         int order_index);
 
-// The number of each block's first trial, by the block's name.
-std::map<std::string, int> first_trials(const Protocol& protocol, std::uint64_t participant_seed,
-                                        int order_index);
+// The number of each block's first trial, by the block's name, in an order as described().
+std::map<std::string, int> first_trials(const std::string& planned_order);
 
 // How many participants it takes to balance the order of the blocks; 1 where it is not balanced.
 int balanced_block_orders(const Protocol& protocol);

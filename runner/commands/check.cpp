@@ -26,6 +26,7 @@ namespace {
 struct CheckOptions {
   std::string protocol;
   std::string participants;
+  bool shows_schedule{false};
   std::string seed{"1"};
   std::string rig;
   int simulations{0};
@@ -168,6 +169,18 @@ void print_simulated(const SimulatedDesign& design, const protocols::Protocol& p
   }
 }
 
+// A page of it, or all.
+void print_schedule(const protocols::Schedule& schedule, bool is_whole) {
+  constexpr std::ptrdiff_t page = 40;
+  const std::ptrdiff_t shown =
+      is_whole ? std::ssize(schedule) : std::min(page, std::ssize(schedule));
+  fmt::print("{}",
+             protocols::described(protocols::Schedule{schedule.begin(), schedule.begin() + shown}));
+  if (shown < std::ssize(schedule)) {
+    fmt::print("… and {} trials more (--schedule shows all)\n", std::ssize(schedule) - shown);
+  }
+}
+
 void run_check(const CheckOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const int participants = planned_participants(options.participants, protocol);
@@ -200,7 +213,7 @@ void run_check(const CheckOptions& options) {
                          static_cast<std::uint64_t>(index));
   fmt::print("\nschedule of participant {} of a simulation with seed {}\n", participants,
              options.seed);
-  fmt::print("{}", protocols::described(make_schedule(protocol, seed, index)));
+  print_schedule(make_schedule(protocol, seed, index), options.shows_schedule);
   if (options.simulations > 0) {
     print_simulated(
         {options.protocol, participants, options.simulations, seed_from(options.seed, "--seed")},
@@ -221,6 +234,7 @@ void add_check(CommandParser& line) {
       "does not render");
   command.option_with_default("--simulations", options->simulations,
                               "Simulate the study so often: power, and widths of intervals");
+  command.flag("--schedule", options->shows_schedule, "All trials of the schedule shown");
   command.on_run([options] { run_check(*options); });
 }
 }  // namespace tapstudy::runner

@@ -290,7 +290,67 @@ std::string heading(const protocols::Block& block, int trials) {
       may_end_early(block) ? "at most " : "", counted(static_cast<std::size_t>(trials), "trial"));
 }
 
+using BlockOrderDealt = std::vector<std::size_t>;  // places in the protocol's list
+
+// All balanced orders; of random ones, those of many participants.
+std::set<BlockOrderDealt> dealt_orders(const protocols::Protocol& protocol) {
+  constexpr int random_orders = 200;
+  const bool is_random = protocol.block_order.order == protocols::Order::shuffle;
+  const int count = is_random ? random_orders : protocols::balanced_block_orders(protocol);
+  std::set<BlockOrderDealt> orders;
+  for (int i = 0; i < count; ++i) {
+    orders.insert(protocols::block_sequence(protocol, static_cast<std::uint64_t>(i), i));
+  }
+  return orders;
+}
+
+bool counted_trials_precede(std::size_t practice, const BlockOrderDealt& order,
+                            const protocols::Protocol& protocol) {
+  return std::any_of(order.begin(), std::ranges::find(order, practice),
+                     [&](std::size_t i) { return !protocol.blocks[i].is_practice; });
+}
+
+std::string described_order(const BlockOrderDealt& order, const protocols::Protocol& protocol) {
+  std::vector<std::string> names;
+  for (const std::size_t i : order) {
+    const protocols::Block& block = protocol.blocks[i];
+    names.push_back(block.name + (block.is_practice ? " (practice)" : ""));
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// Who practises after counted trials learnt in trials that count.
+void print_orders_of_practice(const protocols::Protocol& protocol) {
+  if (protocol.block_order.order == protocols::Order::listed ||
+      std::ranges::none_of(protocol.blocks, &protocols::Block::is_practice)) {
+    return;
+  }
+  constexpr std::size_t max_printed = 12;
+  const std::set<BlockOrderDealt> orders = dealt_orders(protocol);
+  std::size_t printed = 0;
+  for (const BlockOrderDealt& order : orders) {
+    if (printed++ < max_printed) {
+      fmt::print("  order of blocks: {}\n", described_order(order, protocol));
+    }
+  }
+  if (orders.size() > max_printed) {
+    fmt::print("  and {} orders more\n", orders.size() - max_printed);
+  }
+  for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
+    const auto late = std::ranges::count_if(orders, [&](const BlockOrderDealt& order) {
+      return counted_trials_precede(i, order, protocol);
+    });
+    if (protocol.blocks[i].is_practice && late > 0) {
+      fmt::print(
+          "  warning: counted trials come before practice '{}' in {} of {} orders of the blocks "
+          "(put it first, for all of them, or give each block its own)\n",
+          protocol.blocks[i].name, late, orders.size());
+    }
+  }
+}
+
 void warn_of_block_order(const protocols::Protocol& protocol, int participants) {
+  print_orders_of_practice(protocol);
   const int orders = protocols::balanced_block_orders(protocol);
   if (participants % orders != 0) {
     fmt::print(

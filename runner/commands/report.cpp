@@ -192,7 +192,7 @@ void check_options(const ReportOptions& options) {
 void run_report(ReportOptions options) {
   check_options(options);
   if (options.out.empty() && !options.directories.empty()) {
-    options.out = options.directories.front();
+    options.out = (fs::path{options.directories.front()} / report_folder).string();
   }
   check_output_is_new(options);
   Summary summary = summary_of(options);
@@ -248,7 +248,8 @@ void add_report(CommandParser& line) {
                "With --counts: names that read alike are one, the first of them");
   command.flag("--pool-runs", options->table.pools_runs,
                "With --counts: several runs of one participant count together");
-  command.option("--out", options->out, "Output directory; default: the study's own");
+  command.option("--out", options->out,
+                 "Output directory; default: report in the study's own directory");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
                  "Which sessions: real, pilot or simulated");
   command.option("--only", options->only,

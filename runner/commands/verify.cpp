@@ -194,8 +194,18 @@ bool is_older(const fs::path& file, const fs::path& than) {
 }
 }  // namespace
 
-PublishedReport published_report(const std::string& directory, results::Store& store) {
+namespace {
+// Earlier versions wrote it beside study.db.
+std::string directory_of_report(const std::string& study) {
+  const fs::path folder = fs::path{study} / report_folder;
+  std::error_code ignored;
+  return fs::exists(folder / "report.json", ignored) ? folder.string() : study;
+}
+}  // namespace
+
+PublishedReport published_report(const std::string& study_directory, results::Store& store) {
   PublishedReport found;
+  const std::string directory = directory_of_report(study_directory);
   const fs::path file = fs::path{directory} / "report.json";
   std::error_code ignored;
   if (!fs::exists(file, ignored)) {
@@ -207,7 +217,7 @@ PublishedReport published_report(const std::string& directory, results::Store& s
   analysis::Summary summary;
   try {
     mode = results::mode_from(published.at("modes").get<std::string>());
-    summary = summary_of_study({{directory, &store}}, mode);
+    summary = summary_of_study({{study_directory, &store}}, mode);
   } catch (const core::Error& error) {  // of another version
     found.not_compared = error.what();
     return found;
@@ -224,7 +234,7 @@ PublishedReport published_report(const std::string& directory, results::Store& s
   if (is_whole(published, anew)) {
     compare_whole(directory, published, anew, summary, found.differences);
   }
-  if (!found.differences.empty() && is_older(file, results::journal_file(directory))) {
+  if (!found.differences.empty() && is_older(file, results::journal_file(study_directory))) {
     found.differences.clear();
     found.not_compared =
         "it is older than the last entry of answers.journal (make it anew: report --replace)";

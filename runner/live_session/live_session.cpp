@@ -137,7 +137,9 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
         earlier ? place.order_index : request.order_index.value_or(place.order_index);
     plan.language = request.language;
     plan.seed = earlier ? earlier->seed : request.seed ? *request.seed : drawn_seed();
-    session.schedule = make_schedule(protocol, plan.seed, plan.order_index);
+    session.schedule =
+        earlier ? make_schedule(protocol, plan.seed, plan.order_index, earlier->planned_order)
+                : make_schedule(protocol, plan.seed, plan.order_index);
     session.row = session_row(plan, protocol, rig, session.schedule);
     if (earlier) {
       resume(*earlier, protocol, store, session);

@@ -22,20 +22,15 @@
 #include "runner/session/engine/remaining_trials.hpp"
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
-// Fills in each answer's place in its block, from the seed and index of its participant's session.
-void set_places(const protocols::Protocol& protocol,
-                const std::vector<results::SessionRow>& sessions,
-                std::vector<results::AnswerRow>& answers);
-
-void set_places(const protocols::Protocol& protocol,
-                const std::vector<results::SessionRow>& sessions,
+namespace {
+// Fills in each answer's place in its block, from the order that was stored.
+void set_places(const std::vector<results::SessionRow>& sessions,
                 std::vector<results::AnswerRow>& answers) {
   // all sessions of a participant have one order
   std::unordered_map<std::string, std::map<std::string, int>> first_trials_of;
   for (const results::SessionRow& session : sessions) {
-    first_trials_of.try_emplace(
-        session.participant_id,
-        protocols::first_trials(protocol, session.seed, session.order_index));
+    first_trials_of.try_emplace(session.participant_id,
+                                protocols::first_trials(session.planned_order));
   }
   for (results::AnswerRow& answer : answers) {
     answer.place_in_block =
@@ -43,7 +38,6 @@ void set_places(const protocols::Protocol& protocol,
   }
 }
 
-namespace {
 using analysis::TrackResult;
 using protocols::Block;
 using protocols::TrackSummary;
@@ -92,8 +86,8 @@ std::optional<AdaptiveBlocks> replayed(const protocols::Protocol& protocol,
   if (!session) {
     return std::nullopt;
   }
-  const protocols::Schedule schedule =
-      protocols::make_schedule(protocol, session->seed, session->order_index);
+  const protocols::Schedule schedule = protocols::make_schedule(
+      protocol, session->seed, session->order_index, session->planned_order);
   return AdaptiveBlocks{protocol, session->seed, schedule, store.answers_as_given(participant)};
 }
 
@@ -285,7 +279,7 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
   StoredResults found;
   found.sessions = store.sessions();
   found.answers = counted_answers(store, mode);
-  set_places(protocol, found.sessions, found.answers);
+  set_places(found.sessions, found.answers);
   if (detail == Detail::all) {  // which replays the procedures
     set_tracks(protocol, store, found.answers);
   }

@@ -10,6 +10,9 @@
 #include "results/store/store.hpp"
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
+// Where a study's report lies, beside study.db.
+inline constexpr const char* report_folder = "report";
+
 // The part of a protocol that a report of these participants needs.
 analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mode mode);
 

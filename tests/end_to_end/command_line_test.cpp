@@ -145,8 +145,8 @@ TEST_CASE("the demo study runs, is stored whole and is reported", "[end_to_end]"
   REQUIRE(report.exit_code == 0);
   CHECK_THAT(report.standard_output, Contains("presented \\ answered"));
   CHECK_THAT(report.standard_output, Contains("SIMULATED"));
-  CHECK_THAT(testing::contents(study + "/report.html"), Contains("SIMULATED participants"));
-  const auto json = nlohmann::json::parse(testing::contents(study + "/report.json"));
+  CHECK_THAT(testing::contents(study + "/report/report.html"), Contains("SIMULATED participants"));
+  const auto json = nlohmann::json::parse(testing::contents(study + "/report/report.json"));
   int total = 0;
   for (const auto& row : json["blocks"][0]["counts"]) {
     for (const int count : row) {

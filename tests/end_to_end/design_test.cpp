@@ -41,13 +41,13 @@ TEST_CASE("blocks in balanced orders are simulated, verified and reported as the
             .standard_output == "first|2\nsecond|2\n");
   CHECK(testing::tapstudy({"verify", out}).exit_code == 0);
   REQUIRE(testing::tapstudy({"report", out}).exit_code == 0);
-  const auto report = nlohmann::json::parse(testing::contents(out + "/report.json"));
+  const auto report = nlohmann::json::parse(testing::contents(out + "/report/report.json"));
   for (const auto& block : report["blocks"]) {
     const double p = block["accuracy_estimates"][0]["p"];
     CHECK(p > 0.0);
     CHECK(p <= 1.0);
   }
-  CHECK_THAT(testing::contents(out + "/report.html"),
+  CHECK_THAT(testing::contents(out + "/report/report.html"),
              Contains("exchanged their places among participants"));
 }
 
@@ -73,7 +73,7 @@ std::array<double, 3> reported(const TempDirectory& directory, int number) {
       tapstudy_with_participants({"simulate", study, "--seed", std::to_string(seed), "--out", out})
           .exit_code == 0);
   REQUIRE(testing::tapstudy({"report", out}).exit_code == 0);
-  const auto report = nlohmann::json::parse(testing::contents(out + "/report.json"));
+  const auto report = nlohmann::json::parse(testing::contents(out + "/report/report.json"));
   const auto pooled = report.at("blocks").at(0).at("pooled").at(0);
   return {pooled.at("weber_fraction").get<double>(), pooled.at("weber_fraction_low").get<double>(),
           pooled.at("weber_fraction_high").get<double>()};

@@ -270,7 +270,7 @@ TEST_CASE("what a report says that a procedure estimated is Bayes' rule of the s
   session(directory, two_axes_study(directory), 8);
   REQUIRE(testing::tapstudy({"report", directory / "study"}).exit_code == 0);
   const auto report =
-      nlohmann::json::parse(testing::contents((directory / "study") + "/report.json"));
+      nlohmann::json::parse(testing::contents((directory / "study") + "/report/report.json"));
   const Means means = posterior_means(directory);
   const nlohmann::json& study = report.at("study");
   CHECK(reported_mean(study, "threshold") == Approx(means.threshold).epsilon(1e-9));

@@ -198,7 +198,7 @@ TEST_CASE("a factor that is asked for is reported as a matrix of stimuli by leve
   const auto report = testing::tapstudy({"report", directory / "study"});
   INFO(report.standard_output + report.standard_error);
   REQUIRE(report.exit_code == 0);
-  const auto table = testing::contents((directory / "study") + "/material_confusion.csv");
+  const auto table = testing::contents((directory / "study") + "/report/material_confusion.csv");
   CHECK_THAT(table, Contains(",mdf,acrylic\n") && Contains("soft_held"));
   // four ordinary trials of each of two participants; the catch trial is in no result
   CHECK(sql(directory,

@@ -126,8 +126,8 @@ TEST_CASE(
                              "1", "--out", study})
               .exit_code == 0);
   REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
-  CHECK_THAT(testing::contents(study + "/rendered_stimuli.csv"), Contains("fixation"));
-  CHECK_THAT(testing::contents(study + "/block_rendered_stimuli.csv"), Contains("median"));
+  CHECK_THAT(testing::contents(study + "/report/rendered_stimuli.csv"), Contains("fixation"));
+  CHECK_THAT(testing::contents(study + "/report/block_rendered_stimuli.csv"), Contains("median"));
 }
 
 // A study that was run on several machines, each with a store of its own.
@@ -337,7 +337,7 @@ TEST_CASE("exported answers are counted as the study's own report counts them, a
   REQUIRE(table.exit_code == 0);
   CHECK_THAT(table.standard_output, Contains("SIMULATED"));
   REQUIRE(testing::tapstudy({"report", directory / "study", "--replace"}).exit_code == 0);
-  const nlohmann::json own = block_of(directory / "study/report.json");
+  const nlohmann::json own = block_of(directory / "study/report/report.json");
   const nlohmann::json read = block_of(directory / "of_table/report.json");
   for (const char* const key : {"successes", "trials", "value", "wilson_95"}) {
     CHECK(read["accuracy"][key] == own["accuracy"][key]);
@@ -375,7 +375,7 @@ TEST_CASE("an export says which of interleaved staircases chose each level", "[e
        "reported = [(r['trial'], r['track']) for r in csv.DictReader(\n"
        "  line for line in open(sys.argv[2]) if not line.startswith('#'))]\n"
        "print(sorted(exported) == sorted(reported), len(set(t for _, t in exported)))\n",
-       (directory / "e") + "/tracks.csv", study + "/damping_tracks.csv"});
+       (directory / "e") + "/tracks.csv", study + "/report/damping_tracks.csv"});
   INFO(both.standard_error);
   CHECK(both.standard_output == "True 2\n");
 }
@@ -392,7 +392,7 @@ std::string reported(const testing::TempDirectory& directory, const std::string&
                              "--no-traces", "--out", study})
               .exit_code == 0);
   REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
-  return study + "/report.json";
+  return study + "/report/report.json";
 }
 }  // namespace
 

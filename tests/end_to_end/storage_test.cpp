@@ -57,7 +57,7 @@ TEST_CASE("verify makes the report anew and names the numbers that were changed"
   const auto sound = testing::tapstudy({"verify", study});
   CHECK(sound.exit_code == 0);
   CHECK_THAT(sound.standard_output, Contains("identical to a regenerated report"));
-  const std::string report = study + "/report.json";
+  const std::string report = study + "/report/report.json";
   const auto json = nlohmann::json::parse(testing::contents(report));
   const auto changed = [&](const nlohmann::json::json_pointer& at) {
     nlohmann::json other = json;
@@ -71,7 +71,7 @@ TEST_CASE("verify makes the report anew and names the numbers that were changed"
   changed("/blocks/0/accuracy/successes"_json_pointer);
   changed("/blocks/0/counts/1/2"_json_pointer);
   CHECK(testing::tapstudy({"verify", study}).exit_code == 0);
-  const std::string table = study + "/discrimination_confusion.csv";
+  const std::string table = study + "/report/discrimination_confusion.csv";
   testing::write(table, testing::contents(table) + "x,0,0,0,0\n");
   const auto verified = testing::tapstudy({"verify", study});
   CHECK(verified.exit_code == 5);

@@ -72,7 +72,7 @@ class Report(unittest.TestCase):
             directory = self.directory / Path(study).stem
             self.run_program("simulate", SOURCE / study, "--participants", 3, "--seed", 4, "--out", directory)
             self.run_program("report", directory)
-            self.check(directory)
+            self.check(directory / "report")
 
     def test_of_counts(self):
         (self.directory / "answers.csv").write_text(ANSWERS)

@@ -27,8 +27,8 @@ std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
   if (!session || std::ranges::none_of(protocol.blocks, protocols::may_end_early)) {
     return {};
   }
-  const protocols::Schedule schedule =
-      protocols::make_schedule(protocol, session->seed, session->order_index);
+  const protocols::Schedule schedule = protocols::make_schedule(
+      protocol, session->seed, session->order_index, session->planned_order);
   const auto as_given = store.answers_as_given(participant_id);
   const PracticeRecord practice{as_given};
   const AdaptiveBlocks adaptive{protocol, session->seed, schedule, as_given};

@@ -315,14 +315,15 @@ TEST_CASE("two presentations of a stimulus are as far apart as is asked, and no 
 namespace {
 using Names = std::vector<std::string>;
 
-// Blocks whose names begin with "practice" are practice.
+// Blocks whose names begin with "practice" are practice, those that begin with "fixed" fixed.
 protocols::Protocol study(const Names& blocks, const std::string& order) {
   const std::string whole = testing::contents(testing::shipped("paper/discrimination.yaml"));
   std::string text = whole.substr(0, whole.find("\nblocks:")) + "\nblocks:\n";
   for (const std::string& name : blocks) {
     text += "  - {name: " + name + ", task: identification, question: \"Which?\", " +
             "stimuli: [mdf_two, mdf_three], repetitions: 2" +
-            (name.starts_with("practice") ? ", practice: true}\n" : "}\n");
+            (name.starts_with("practice") ? ", practice: true" : "") +
+            (name.find("fixed") != std::string::npos ? ", fixed: true}\n" : "}\n");
   }
   text += order.empty() ? "" : "block_order: " + order + "\n";
   return protocols::parse_protocol(text, "study.yaml");
@@ -371,6 +372,61 @@ TEST_CASE("random orders of blocks follow from the participant's seed, and all o
   CHECK(names_of(study({"a", "b", "c"}, ""), 7, 3) == Names{"a", "b", "c"});
 }
 
+TEST_CASE(
+    "practice that stands first comes before every counted trial, unless each block has its own",
+    "[protocols][schedule]") {
+  const std::string order = GENERATE("{order: williams}", "{order: shuffle}");
+  const auto orders_of = [&](const Names& blocks) {
+    const protocols::Protocol protocol = study(blocks, order);
+    std::set<Names> seen;
+    for (int i = 0; i < 60; ++i) {
+      seen.insert(names_of(protocol, static_cast<std::uint64_t>(i), i));
+    }
+    return seen;
+  };
+  for (const Names& names : orders_of({"practice", "practice_2", "a", "b", "practice_c", "c"})) {
+    CHECK(names[0] == "practice");
+    CHECK(names[1] == "practice_2");
+    const auto own = std::ranges::find(names, "practice_c");  // of one block: moves with it
+    REQUIRE(own != names.end());
+    CHECK(*std::next(own) == "c");
+  }
+  CHECK(orders_of({"practice_a", "a", "practice_b", "b"}) ==
+        std::set<Names>{{"practice_a", "a", "practice_b", "b"},
+                        {"practice_b", "b", "practice_a", "a"}});
+}
+
+TEST_CASE("a fixed block stays in its place, and so does fixed practice", "[protocols][schedule]") {
+  std::set<Names> seen;
+  const protocols::Protocol protocol =
+      study({"practice_a", "a", "fixed", "practice_fixed", "b"}, "{order: williams}");
+  for (int i = 0; i < 2; ++i) {
+    seen.insert(names_of(protocol, 1, i));
+  }
+  CHECK(seen == std::set<Names>{{"practice_a", "a", "fixed", "practice_fixed", "b"},
+                                {"practice_a", "b", "fixed", "practice_fixed", "a"}});
+}
+
+TEST_CASE("a stored order of blocks is kept, whatever this version would draw",
+          "[protocols][schedule]") {
+  const protocols::Protocol protocol = study({"practice", "a", "b"}, "{order: williams}");
+  // as an earlier version drew it: practice with the block after it
+  std::string stored;
+  int number = 0;
+  std::map<std::string, std::string> lines;  // each block has the trials of its place in the file
+  for (const protocols::PlannedTrial& trial : make_schedule(protocol, 9, 0)) {
+    lines[trial.block] += "#" + protocols::described({trial}).substr(1 + (trial.number > 9));
+  }
+  for (const std::string block : {"b", "practice", "a"}) {
+    for (const char c : lines.at(block)) {
+      stored += c == '#' ? std::to_string(++number) : std::string(1, c);
+    }
+  }
+  CHECK(protocols::described(make_schedule(protocol, 9, 0, stored)) == stored);
+  CHECK(protocols::described(make_schedule(protocol, 9, 0)) != stored);
+  CHECK(protocols::first_trials(stored).at("practice") > 1);
+}
+
 TEST_CASE("practice moves with the block after it, and blocks that are not named stay",
           "[protocols][schedule]") {
   const protocols::Protocol protocol =
@@ -391,7 +447,8 @@ TEST_CASE("trials are numbered in the order of the blocks, and each block keeps 
   const protocols::Protocol protocol = study({"a", "b"}, "{order: williams}");
   std::map<std::string, std::set<Names>> stimuli;
   for (int i = 0; i < 2; ++i) {
-    const auto first = protocols::first_trials(protocol, 9, i);
+    const auto first =
+        protocols::first_trials(protocols::described(protocols::make_schedule(protocol, 9, i)));
     int number = 0;
     std::map<std::string, Names> order;
     for (const protocols::PlannedTrial& trial : protocols::make_schedule(protocol, 9, i)) {
@@ -416,6 +473,9 @@ TEST_CASE("an order of blocks that is none is refused", "[protocols]") {
   refused("{order: williams, blocks: [a, c]}", "'c' is not");
   refused("{order: williams, blocks: [practice, a]}", "'practice' is not");
   refused("{order: williams, blocks: [a, a]}", "twice");
+  CHECK_THROWS_WITH(study({"a", "fixed", "b"}, "{order: williams, blocks: [a, fixed]}"),
+                    Contains("'fixed' is not"));
+  CHECK_THROWS_WITH(study({"a", "fixed"}, "{order: williams}"), Contains("two blocks or more"));
   refused("{order: listed}", "'listed' is not");
   refused("{}", "order");
   CHECK_THROWS_WITH(study({"a"}, "{order: shuffle}"), Contains("two blocks or more"));

@@ -109,12 +109,12 @@ TEST_CASE("forces, waveforms and spectra in a report are what NumPy finds in the
   REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
   const auto compared = testing::run_program(
       {"/usr/bin/python3", testing::source("tests/analysis/report/study/compare_with_numpy.py"),
-       study, study + "/report.json", testing::shipped(protocol)});
+       study, study + "/report/report.json", testing::shipped(protocol)});
   INFO(protocol << ": " << compared.standard_error);
   CHECK(compared.exit_code == 0);
   const auto fits = testing::run_program(
       {"/usr/bin/python3", testing::source("tests/protocols/validate.py"),
-       testing::source("analysis/report/report.schema.json"), study + "/report.json"});
+       testing::source("analysis/report/report.schema.json"), study + "/report/report.json"});
   INFO(fits.standard_error);
   CHECK(fits.exit_code == 0);
 }
@@ -124,7 +124,7 @@ TEST_CASE("a report has the modes that the program finds in the stimulus",
   const testing::TempDirectory directory;
   const std::string study = simulated(directory, "paper/discrimination.yaml");
   REQUIRE(testing::tapstudy({"report", study, "--only", "rendered"}).exit_code == 0);
-  const auto report = nlohmann::json::parse(testing::contents(study + "/report.json"));
+  const auto report = nlohmann::json::parse(testing::contents(study + "/report/report.json"));
   CHECK(report.at("blocks").empty());
   const auto modes = nlohmann::json::parse(
       testing::tapstudy({"modes", testing::shipped("paper/discrimination.yaml"), "--stimulus",
@@ -152,11 +152,11 @@ TEST_CASE("without traces one sentence says so, and no figure is drawn", "[end_t
   const testing::TempDirectory directory;
   const std::string study = simulated(directory, "paper/discrimination.yaml", {"--no-traces"});
   REQUIRE(testing::tapstudy({"report", study, "--only", "rendered"}).exit_code == 0);
-  const std::string html = testing::contents(study + "/report.html");
+  const std::string html = testing::contents(study + "/report/report.html");
   CHECK_THAT(html,
              Contains("Forces, speeds and waveforms are left out: this study has no traces."));
   CHECK_THAT(html, !Contains("<figure"));
-  const auto report = nlohmann::json::parse(testing::contents(study + "/report.json"));
+  const auto report = nlohmann::json::parse(testing::contents(study + "/report/report.json"));
   CHECK(report.at("study").at("rendered_stimuli").size() == 4);
   CHECK_FALSE(report.at("study").contains("rendered_forces"));
 }
@@ -169,10 +169,10 @@ TEST_CASE("figures are files of their own, and say that they are simulated",
   const auto parsed = testing::run_program(
       {"/usr/bin/python3", "-c",
        "import glob, sys, xml.etree.ElementTree as tree\n"
-       "files = glob.glob(sys.argv[1] + '/figures/*.svg')\n"
-       "pdf = {file[:-4] for file in glob.glob(sys.argv[1] + '/figures/*.pdf')}\n"
+       "files = glob.glob(sys.argv[1] + '/report/figures/*.svg')\n"
+       "pdf = {file[:-4] for file in glob.glob(sys.argv[1] + '/report/figures/*.pdf')}\n"
        "assert pdf == {file[:-4] for file in files}\n"
-       "html = open(sys.argv[1] + '/report.html').read()\n"
+       "html = open(sys.argv[1] + '/report/report.html').read()\n"
        "assert len(files) == html.count('<figure') > 10, len(files)\n"
        "for file in files:\n"
        "  text = ''.join(tree.parse(file).getroot().itertext())\n"
@@ -192,7 +192,7 @@ TEST_CASE("a part that a report does not have is refused with those that it has"
              Contains("--only nothing") &&
                  Contains("discrimination, sessions, procedures, questionnaires, rendered"));
   REQUIRE(testing::tapstudy({"report", study, "--only", "sessions"}).exit_code == 0);
-  const std::string html = testing::contents(study + "/report.html");
+  const std::string html = testing::contents(study + "/report/report.html");
   CHECK_THAT(html, Contains("How the sessions went") && Contains("SIMULATED") &&
                        !Contains("What was rendered"));
 }
@@ -206,7 +206,7 @@ TEST_CASE("switches and biases in a report are those of the stored events",
       {"/usr/bin/python3", "-c",
        "import collections, json, sqlite3, sys\n"
        "db = sqlite3.connect(sys.argv[1] + '/study.db')\n"
-       "block = json.load(open(sys.argv[1] + '/report.json'))['blocks'][0]\n"
+       "block = json.load(open(sys.argv[1] + '/report/report.json'))['blocks'][0]\n"
        "pairs, first, last, labels, all = collections.Counter(), 0, 0, collections.Counter(), 0\n"
        "for trial, response in db.execute('SELECT trial_id, response FROM current_response'):\n"
        "  names, shown = zip(*db.execute('SELECT stimulus, label FROM alternative WHERE '\n"

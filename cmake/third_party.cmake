@@ -54,6 +54,12 @@ add_library(sndfile::sndfile INTERFACE IMPORTED)
 target_include_directories(sndfile::sndfile SYSTEM INTERFACE ${SNDFILE_INCLUDE})
 target_link_libraries(sndfile::sndfile INTERFACE ${SNDFILE_LIBRARY})
 
+find_path(MATIO_INCLUDE matio.h REQUIRED)
+find_library(MATIO_LIBRARY matio REQUIRED)
+add_library(matio::matio INTERFACE IMPORTED)
+target_include_directories(matio::matio SYSTEM INTERFACE ${MATIO_INCLUDE})
+target_link_libraries(matio::matio INTERFACE ${MATIO_LIBRARY})
+
 # Without the flags of threads that GLib's users also get: they are not those of the precompiled header.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(LIBRSVG REQUIRED librsvg-2.0 cairo-pdf)

@@ -55,7 +55,8 @@ void check_playback(const TapQuestion& question) {
 TapQuestion question_of(const IdentifyOptions& options) {
   TapQuestion question = options.question;
   if (question.recordings.empty()) {
-    throw core::InvalidInput{"identify takes at least one recording (CSV or WAV)"};
+    throw core::InvalidInput{
+        "identify takes at least one recording (CSV, MATLAB, universal file or WAV)"};
   }
   for (const std::string& file : question.recordings) {
     if (std::ranges::count(question.recordings, file) > 1) {
@@ -126,13 +127,16 @@ void add_identify(CommandParser& line) {
   const auto options = std::make_shared<IdentifyOptions>();
   TapQuestion& question = options->question;
   command.arguments("recordings", question.recordings,
-                    "Recordings (.csv, .txt, .tsv; WAV, FLAC ...)");
+                    "Recordings: tables (.csv, .txt, .tsv, .dat, .lvm), MATLAB (.mat), universal "
+                    "files (.uff, .unv), WAV, FLAC ...");
   command.option("--out", options->out,
                  "New directory for identified.yaml, identified.json and figures", Need::required);
   command.option("--protocol", question.protocol, "Study (YAML) with a model of what was tapped");
   command.option("--stimulus", question.stimulus, "Which of its stimuli was tapped");
   command.number_within("--rate", question.reading.rate_hz, 0.0, 1e7,
-                        "Samples a second, of tables without a time column");
+                        "Samples a second, where the file does not state them");
+  command.flag("--trust-rate", question.reading.trusts_rate,
+               "Take --rate instead of another rate that the file states");
   command.number_within("--rate-error", question.rate_error, 0.0, 0.1,
                         "Relative error of the recordings' rate that intervals include; default: "
                         "0.001 (a quartz: 0.0001)");

@@ -8,59 +8,39 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <optional>
+#include <sstream>
 #include <utility>
 
+#include "analysis/modal/recording/instrument_table.hpp"
+#include "analysis/modal/recording/sampling.hpp"
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr double largest_value = 1e100;        // squares and their sums are finite
-constexpr double max_rate_difference = 0.001;  // more is a mistake, not rounded times
-
+constexpr double largest_value = 1e100;  // squares and their sums are finite
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
   throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
 }
 
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-// The micro sign, and the Greek letter mu.
-std::string with_ascii_micro(const std::string& text) {
-  std::string ascii;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool is_micro = text.compare(i, 2, "\u00b5") == 0 || text.compare(i, 2, "\u03bc") == 0;
-    ascii += is_micro ? 'u' : text[i];
-    i += is_micro ? 1 : 0;
+// What to do about a cell that is no number.
+const char* advice_on(const std::string& cell) {
+  const std::string digits = "0123456789";
+  const auto is_date_at = [&](std::size_t at) {
+    return at > 0 && at + 1 < cell.size() && digits.find(cell[at - 1]) != std::string::npos &&
+           digits.find(cell[at + 1]) != std::string::npos;
+  };
+  if (is_date_at(cell.find(':')) || is_date_at(cell.find('-')) || is_date_at(cell.find('/'))) {
+    return ": of dates and times of day nothing is read (give the rate by --rate HZ, and the "
+           "values' column by --column)";
   }
-  return ascii;
-}
-
-// Seconds per unit of a time column's header: "t", "time", "Time (ms)", "time_us", "t [s]" ...;
-// 0: the header is not that of a time.
-double seconds_per_unit(const std::string& header) {
-  std::string letters;
-  for (const char c : lower_case(with_ascii_micro(header))) {
-    const auto byte = static_cast<unsigned char>(c);
-    letters += byte >= 0x80 || std::isalpha(byte) != 0 ? c : ' ';
+  if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NAN" || cell == "-nan") {
+    return ": a sample is missing there (keep the part of the recording that has them all)";
   }
-  std::istringstream stream{letters};
-  std::string word;
-  std::string unit;
-  std::string rest;
-  stream >> word >> unit >> rest;
-  if ((word != "t" && word != "time") || !rest.empty()) {
-    return 0.0;
-  }
-  if (unit.empty() || unit == "s" || unit == "sec" || unit == "seconds") {
-    return 1.0;
-  }
-  return unit == "ms" ? 1e-3 : (unit == "us" ? 1e-6 : 0.0);
+  return ": is this a table of one row a sample? Of an oscilloscope's file keep the columns of "
+         "time "
+         "and value alone";
 }
 
 // Rows of numbers below an optional header.
@@ -90,6 +70,12 @@ class Table {
     return has_headers() ? headers_[column] : fmt::format("column {}", column + 1);
   }
 
+  // Dates are none.
+  bool begins_with_number(std::size_t column) const {
+    const auto& cells = text_.rows[first_row_].cells;
+    return column < cells.size() && text_.number(cells[column]).has_value();
+  }
+
   std::vector<double> values(std::size_t column) const {
     std::vector<double> all;
     all.reserve(rows());
@@ -102,7 +88,8 @@ class Table {
       const std::optional<double> value = text_.number(row.cells[column]);
       if (!value || !(std::abs(*value) <= largest_value)) {
         refuse(file_, row.line,
-               fmt::format("'{}' is not a number up to {:g}", row.cells[column], largest_value));
+               fmt::format("'{}' is not a number up to {:g}{}", row.cells[column], largest_value,
+                           advice_on(row.cells[column])));
       }
       all.push_back(*value);
     }
@@ -125,7 +112,8 @@ struct TimeColumn {
 std::optional<TimeColumn> time_column(const Table& table, const ReadingOptions& options) {
   for (std::size_t i = 0; i < table.headers().size(); ++i) {
     const double unit = seconds_per_unit(table.headers()[i]);
-    if (unit > 0.0) {
+    const bool is_replaced = options.rate_hz > 0.0 && !table.begins_with_number(i);
+    if (unit > 0.0 && !is_replaced) {
       return TimeColumn{i, unit};
     }
   }
@@ -137,44 +125,11 @@ std::optional<TimeColumn> time_column(const Table& table, const ReadingOptions& 
   return ascends ? std::optional{TimeColumn{0, 1.0}} : std::nullopt;
 }
 
-// Start and period of the grid nearest to the times by least squares: each of them may be off.
-std::pair<double, double> uniform_grid(const std::vector<double>& times) {
-  const auto count = static_cast<double>(times.size());
-  const double middle = 0.5 * (count - 1.0);
-  double mean = 0.0;
-  double slope = 0.0;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    mean += (times[i] - times.front()) / count;
-    slope += (static_cast<double>(i) - middle) * (times[i] - times.front());
-  }
-  const double period = slope / (count * (count * count - 1.0) / 12.0);
-  return {times.front() + mean - middle * period, period};
-}
-
 double rate_from_times(const Table& table, const TimeColumn& column) {
-  const std::vector<double> times = table.values(column.index);
-  const std::pair<double, double> grid = uniform_grid(times);
-  const double start = grid.first;
-  const double period = grid.second;
-  if (!(period > 0.0)) {
-    refuse(table.file(), table.last_line(), "times must ascend");
-  }
-  double furthest = 0.0;
-  std::size_t worst_step = 1;
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    const double expected = start + period * static_cast<double>(i);
-    furthest = std::max(furthest, std::abs(times[i] - expected) / period);
-    const auto misfit = [&](std::size_t k) { return std::abs(times[k] - times[k - 1] - period); };
-    worst_step = misfit(i) > misfit(worst_step) ? i : worst_step;
-  }
-  if (furthest > max_jitter_periods) {
-    refuse(table.file(), table.line(worst_step),
-           fmt::format("times are up to {:.2g} periods from a uniform grid (at most {}); here the "
-                       "step is {:.3g} periods: samples are missing or were not taken uniformly",
-                       furthest, max_jitter_periods,
-                       (times[worst_step] - times[worst_step - 1]) / period));
-  }
-  return 1.0 / (period * column.seconds_per_unit);
+  const auto place = [&](std::size_t row) {
+    return fmt::format("{}:{}", table.file(), table.line(row));
+  };
+  return rate_of_times(table.values(column.index), place) / column.seconds_per_unit;
 }
 
 // The column with this header or, failing that, this number from 1.
@@ -212,34 +167,24 @@ std::size_t data_column(const Table& table, const ReadingOptions& options,
   return time && time->index == 0 ? 1 : 0;
 }
 
-double rate_of(const Table& table, const ReadingOptions& options,
-               const std::optional<TimeColumn>& time) {
-  if (!time && !(options.rate_hz > 0.0)) {
-    refuse(table.file(), 1, "has no time column (give the rate by --rate HZ)");
-  }
-  if (!time) {
-    return options.rate_hz;
-  }
-  const double rate_hz = rate_from_times(table, *time);
-  if (options.rate_hz > 0.0 && std::abs(rate_hz / options.rate_hz - 1.0) > max_rate_difference) {
-    refuse(table.file(), table.last_line(),
-           fmt::format("its times say {:.6g} samples a second, --rate {:g}", rate_hz,
-                       options.rate_hz));
-  }
-  return options.rate_hz > 0.0 ? options.rate_hz : rate_hz;
-}
 }  // namespace
 
 Recording read_csv_recording(std::istream& text, const std::string& file,
                              const ReadingOptions& options) {
-  const Table table{read_csv(text, file), file};
+  std::istringstream plain{plain_table(table_text(text, file))};
+  const Table table{read_csv(plain, file), file};
   if (table.rows() < min_samples) {
     refuse(file, table.last_line(),
            fmt::format("has {} samples (at least {})", table.rows(), min_samples));
   }
   const std::optional<TimeColumn> time = time_column(table, options);
   const std::size_t column = data_column(table, options, time);
-  return {file, table.title(column), rate_of(table, options, time), table.values(column), {}};
+  const auto of_times_hz = time ? std::optional{rate_from_times(table, *time)} : std::nullopt;
+  Recording recording{file, table.title(column), 0.0, table.values(column), {}};
+  recording.rate_hz =
+      agreed_rate(of_times_hz, options, fmt::format("{}:{}", file, time ? table.last_line() : 1),
+                  "its times say", recording.remarks);
+  return recording;
 }
 
 namespace {
@@ -270,9 +215,34 @@ const char* name(Quantity quantity) {
   return std::ranges::find(quantities, quantity, &std::pair<const char*, Quantity>::second)->first;
 }
 
+namespace {
+// One sentence on what has to be converted first; empty: it may be sound.
+std::string advice_on_format(const std::string& ending) {
+  if (ending == ".tdms") {
+    return "LabVIEW's TDMS is not read: save it as text (.lvm) or MATLAB file, or convert it, in "
+           "Python by npTDMS, to CSV";
+  }
+  if (ending == ".h5" || ending == ".hdf5" || ending == ".npy" || ending == ".npz") {
+    return "arrays of HDF5 and numpy are not read: save them as a table (numpy.savetxt) or MATLAB "
+           "file (scipy.io.savemat)";
+  }
+  return {};
+}
+}  // namespace
+
 Recording read_recording(const std::string& file, const ReadingOptions& options) {
   const std::string ending = lower_case_ending(file);
-  if (ending != ".csv" && ending != ".txt" && ending != ".tsv") {
+  if (ending == ".mat") {
+    return read_matlab_file(file, options);
+  }
+  if (ending == ".uff" || ending == ".unv" || ending == ".uf") {
+    return read_universal_file(file, options);
+  }
+  if (const std::string advice = advice_on_format(ending); !advice.empty()) {
+    throw core::InvalidInput{file + ": " + advice};
+  }
+  constexpr std::array tables{".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm"};
+  if (std::ranges::find(tables, ending) == tables.end()) {
     return read_sound_file(file, options);
   }
   std::ifstream text{file};

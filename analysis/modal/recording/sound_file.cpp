@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 #include <sndfile.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
-#include "analysis/modal/recording/recording.hpp"
+#include "analysis/modal/recording/sampling.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
@@ -42,20 +44,49 @@ std::vector<double> samples_of(SNDFILE* sound, const SF_INFO& info, int channel)
   }
   return samples;
 }
+// Others, of which libsndfile reads headerless ones and those of MATLAB, too, are refused.
+void check_container(const std::string& file, int format) {
+  constexpr int mpeg = 0x230000;  // SF_FORMAT_MPEG, since libsndfile 1.1
+  constexpr std::array<int, 10> containers{
+      SF_FORMAT_WAV, SF_FORMAT_WAVEX, SF_FORMAT_RF64, SF_FORMAT_W64, SF_FORMAT_AIFF,
+      SF_FORMAT_AU,  SF_FORMAT_CAF,   SF_FORMAT_FLAC, SF_FORMAT_OGG, mpeg};
+  if (std::ranges::find(containers, format & SF_FORMAT_TYPEMASK) == containers.end()) {
+    throw core::InvalidInput{file +
+                             ": is no sound file (WAV, FLAC, AIFF, AU, CAF, Ogg or MP3 are read; "
+                             "tables end in .csv, .txt, .tsv, .dat or .lvm, MATLAB files in .mat, "
+                             "universal files in .uff or .unv)"};
+  }
+}
+
+bool is_lossy(int format) {
+  switch (format & SF_FORMAT_SUBMASK) {
+    case SF_FORMAT_PCM_S8:
+    case SF_FORMAT_PCM_U8:
+    case SF_FORMAT_PCM_16:
+    case SF_FORMAT_PCM_24:
+    case SF_FORMAT_PCM_32:
+    case SF_FORMAT_FLOAT:
+    case SF_FORMAT_DOUBLE:
+    case SF_FORMAT_ALAC_16:
+    case SF_FORMAT_ALAC_20:
+    case SF_FORMAT_ALAC_24:
+    case SF_FORMAT_ALAC_32:
+      return false;
+    default:
+      return true;
+  }
+}
 }  // namespace
 
 Recording read_sound_file(const std::string& file, const ReadingOptions& options) {
   SF_INFO info{};
   const std::unique_ptr<SNDFILE, Close> sound{sf_open(file.c_str(), SFM_READ, &info)};
   if (sound == nullptr) {
-    throw core::InvalidInput{
-        fmt::format("{}: cannot be read as sound: {} (tables end in .csv, .txt or .tsv)", file,
-                    sf_strerror(nullptr))};
+    throw core::InvalidInput{fmt::format(
+        "{}: cannot be read as sound: {} (tables end in .csv, .txt, .tsv, .dat or .lvm)", file,
+        sf_strerror(nullptr))};
   }
-  if (options.rate_hz > 0.0 && options.rate_hz != info.samplerate) {
-    throw core::InvalidInput{fmt::format("{}: says {} samples a second, --rate {:g}", file,
-                                         info.samplerate, options.rate_hz)};
-  }
+  check_container(file, info.format);
   if (info.frames > max_frames) {
     throw core::InvalidInput{
         fmt::format("{}: has {} samples (at most {})", file, info.frames, max_frames)};
@@ -63,9 +94,16 @@ Recording read_sound_file(const std::string& file, const ReadingOptions& options
   const int channel = channel_from(options.column, info.channels, file);
   Recording recording{file,
                       fmt::format("channel {}", channel + 1),
-                      static_cast<double>(info.samplerate),
+                      0.0,
                       samples_of(sound.get(), info, channel),
                       {}};
+  recording.rate_hz =
+      agreed_rate(static_cast<double>(info.samplerate), options, file, "says", recording.remarks);
+  if (is_lossy(info.format)) {
+    recording.remarks.emplace_back(
+        "is sound of a lossy format: its coder adds and removes what nobody is to hear, so weak "
+        "modes and damping ratios may be the coder's (record WAV or FLAC)");
+  }
   for (std::size_t i = 0; i < recording.samples.size(); ++i) {
     if (!std::isfinite(recording.samples[i])) {
       throw core::InvalidInput{fmt::format("{}: sample {} is not finite", file, i + 1)};

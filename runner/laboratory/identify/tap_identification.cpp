@@ -86,6 +86,7 @@ class Identifier {
                               protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
     int impacts = 0;
     for (const MeasuredFile& file : files) {
+      add_remarks_of(file);
       impacts += add(file, impacts);
     }
     if (result_.taps.empty()) {
@@ -111,6 +112,13 @@ class Identifier {
       }
     }
   }
+  // What was noticed while reading, once for all channels.
+  void add_remarks_of(const MeasuredFile& file) {
+    for (const std::string& remark : file.channels.front().remarks) {
+      result_.remarks.push_back(file.channels.front().file + ": " + remark);
+    }
+  }
+
   // Returns the number of impacts in the file; `before` is the number in earlier recordings.
   int add(const MeasuredFile& file, int before) {
     const analysis::FoundTaps found = find_taps(file, result_.question.finding);

@@ -1,0 +1,157 @@
+#include "analysis/modal/recording/instrument_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "analysis/modal/recording/sampling.hpp"
+#include "core/text/plain_text.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr char blank = ' ';
+
+std::vector<std::string> words_of(std::string_view line) {
+  std::vector<std::string> words;
+  for (std::size_t begin = line.find_first_not_of(" \t\r"); begin != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
+    words.emplace_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(" \t\r", end);
+  }
+  return words;
+}
+
+std::vector<std::string> cells_of(std::string_view line, char separator) {
+  if (separator == blank) {
+    return words_of(line);
+  }
+  std::vector<std::string> cells;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
+    cells.push_back(core::trimmed(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return cells;
+}
+
+bool is_a_number(std::string cell, char separator) {
+  if (separator != ',') {
+    std::ranges::replace(cell, ',', '.');
+  }
+  return core::number_in<double>(std::string_view{cell}.substr(cell.starts_with('+') ? 1 : 0))
+      .has_value();
+}
+
+// How many cells a row of numbers has; 0: it is none.
+std::size_t numbers_in(std::string_view line, char separator) {
+  const std::vector<std::string> cells = cells_of(line, separator);
+  const bool are_numbers = !cells.empty() && !cells.front().empty() &&
+                           std::ranges::all_of(cells, [&](const std::string& cell) {
+                             return cell.empty() || is_a_number(cell, separator);
+                           });
+  return are_numbers ? cells.size() : 0;
+}
+
+struct FirstNumbers {
+  std::size_t line{};  // index
+  std::size_t cells{};
+  char separator{};
+};
+std::optional<FirstNumbers> first_numbers(const std::vector<std::string_view>& lines) {
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+    for (const char separator : {'\t', ';', ',', blank}) {
+      const std::size_t cells = numbers_in(lines[i], separator);
+      const bool is_separated = cells > 1 || separator == blank;
+      if (cells > 0 && is_separated && numbers_in(lines[i + 1], separator) == cells) {
+        return FirstNumbers{i, cells, cells == 1 ? ',' : separator};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+bool is_comment(std::string_view line) {
+  return line.starts_with('#') || line.starts_with('%');
+}
+
+std::string joined_by(char separator, const std::vector<std::string>& cells, std::size_t count) {
+  std::string line;
+  for (std::size_t i = 0; i < std::min(cells.size(), count); ++i) {
+    line += (i == 0 ? "" : std::string(1, separator)) + cells[i];
+  }
+  return line;
+}
+
+// The header as the rows' cells ask for it; unset if the line above them is none.
+std::optional<std::string> header_above(const std::vector<std::string_view>& lines,
+                                        const FirstNumbers& first) {
+  if (first.line == 0) {
+    return std::nullopt;
+  }
+  std::string_view line = lines[first.line - 1];
+  const bool is_commented = is_comment(line);
+  line.remove_prefix(is_commented ? 1 : 0);
+  const std::vector<std::string> cells = cells_of(line, first.separator);
+  const bool fits = is_commented ? cells.size() == first.cells : cells.size() >= first.cells;
+  const bool names_time = std::ranges::any_of(
+      cells, [](const std::string& cell) { return seconds_per_unit(cell) > 0.0; });
+  if (!fits || (is_commented && !names_time)) {
+    return std::nullopt;
+  }
+  return joined_by(first.separator == blank ? '\t' : first.separator, cells, first.cells);
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  constexpr std::string_view byte_order_mark_utf8 = "\xEF\xBB\xBF";
+  text.remove_prefix(text.starts_with(byte_order_mark_utf8) ? byte_order_mark_utf8.size() : 0);
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    lines.back().remove_suffix(lines.back().ends_with('\r') ? 1 : 0);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+// A header in quotes may be of several lines, and a table of one header needs no help.
+bool is_plain(const std::vector<std::string_view>& lines, const FirstNumbers& first) {
+  std::size_t headers = 0;
+  for (std::size_t i = 0; i < first.line; ++i) {
+    if (lines[i].find('"') != std::string_view::npos) {
+      return true;
+    }
+    headers += lines[i].empty() || lines[i].starts_with('#') ? 0 : 1;
+  }
+  const std::size_t above =
+      headers == 0 ? first.cells : cells_of(lines[first.line - 1], first.separator).size();
+  return first.separator != blank && headers <= 1 && above == first.cells;
+}
+}  // namespace
+
+std::string plain_table(const std::string& text) {
+  const std::vector<std::string_view> lines = lines_of(text);
+  const auto first = first_numbers(lines);
+  if (!first || is_plain(lines, *first)) {
+    return text;
+  }
+  const auto header = header_above(lines, *first);
+  std::string plain;
+  plain.reserve(text.size() + lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool is_header = header && i + 1 == first->line;
+    if (is_header) {
+      plain += *header;
+    } else if (i < first->line) {
+      plain += "#" + std::string{lines[i]};
+    } else if (first->separator == blank) {
+      plain += joined_by('\t', words_of(lines[i]), lines[i].size());
+    } else {
+      plain += lines[i];
+    }
+    plain += '\n';
+  }
+  return plain;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <matio.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "analysis/modal/recording/sampling.hpp"
+#include "core/error.hpp"
+#include "core/text/plain_text.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr std::size_t max_matlab_values = 100'000'000;
+
+struct CloseMatlab {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+using MatlabFile = std::unique_ptr<mat_t, CloseMatlab>;
+using MatlabVariable = std::unique_ptr<matvar_t, CloseMatlab>;
+
+struct MatlabArray {
+  std::string name;
+  std::size_t rows{};
+  std::size_t columns{};
+  std::size_t size() const { return rows * columns; }
+  bool is_vector() const { return rows == 1 || columns == 1; }
+  std::size_t channels() const { return std::min(rows, columns); }
+};
+
+bool is_numeric(const matvar_t& variable) {
+  return variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64 &&
+         variable.isComplex == 0 && variable.isLogical == 0 && variable.rank == 2 &&
+         variable.name != nullptr;
+}
+
+// The real matrices of numbers in the file.
+std::vector<MatlabArray> matlab_arrays(mat_t* file) {
+  std::vector<MatlabArray> arrays;
+  for (MatlabVariable one{Mat_VarReadNextInfo(file)}; one; one.reset(Mat_VarReadNextInfo(file))) {
+    const std::size_t rows = is_numeric(*one) ? one->dims[0] : 0;
+    const std::size_t columns = is_numeric(*one) ? one->dims[1] : 0;
+    if (rows > 0 && columns > 0 && columns <= max_matlab_values / rows) {
+      arrays.push_back({one->name, rows, columns});
+    }
+  }
+  Mat_Rewind(file);
+  return arrays;
+}
+
+template <class Number>
+std::vector<double> as_doubles(const matvar_t& variable, std::size_t count) {
+  const auto* const first = static_cast<const Number*>(variable.data);
+  std::vector<double> values(count);
+  std::transform(first, first + count, values.begin(),
+                 [](Number value) { return static_cast<double>(value); });
+  return values;
+}
+
+std::vector<double> doubles_of(const matvar_t& variable, std::size_t count) {
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+      return as_doubles<double>(variable, count);
+    case MAT_C_SINGLE:
+      return as_doubles<float>(variable, count);
+    case MAT_C_INT8:
+      return as_doubles<std::int8_t>(variable, count);
+    case MAT_C_UINT8:
+      return as_doubles<std::uint8_t>(variable, count);
+    case MAT_C_INT16:
+      return as_doubles<std::int16_t>(variable, count);
+    case MAT_C_UINT16:
+      return as_doubles<std::uint16_t>(variable, count);
+    case MAT_C_INT32:
+      return as_doubles<std::int32_t>(variable, count);
+    case MAT_C_UINT32:
+      return as_doubles<std::uint32_t>(variable, count);
+    case MAT_C_INT64:
+      return as_doubles<std::int64_t>(variable, count);
+    default:
+      return as_doubles<std::uint64_t>(variable, count);
+  }
+}
+
+// Column after column.
+std::vector<double> values_of(mat_t* file, const MatlabArray& array, const std::string& path) {
+  const MatlabVariable variable{Mat_VarRead(file, array.name.c_str())};
+  if (!variable || variable->data == nullptr || !is_numeric(*variable) ||
+      variable->data_size <= 0 ||
+      variable->nbytes / static_cast<std::size_t>(variable->data_size) < array.size()) {
+    throw core::InvalidInput{
+        fmt::format("{}: its variable {} cannot be read: is the file cut off?", path, array.name)};
+  }
+  return doubles_of(*variable, array.size());
+}
+
+std::vector<double> channel_of(const std::vector<double>& values, const MatlabArray& array,
+                               std::size_t channel) {
+  const bool are_columns = array.rows >= array.columns;
+  std::vector<double> samples;
+  for (std::size_t i = 0; i < std::max(array.rows, array.columns); ++i) {
+    samples.push_back(are_columns ? values[channel * array.rows + i]
+                                  : values[i * array.rows + channel]);
+  }
+  return samples;
+}
+
+struct MatlabChannel {
+  std::string name;  // "acc", "acc:2"
+  const MatlabArray* array{};
+  std::size_t channel{};
+};
+
+bool is_time(const MatlabArray& array) {
+  return seconds_per_unit(array.name) > 0.0 && array.is_vector();
+}
+
+std::vector<MatlabChannel> matlab_channels(const std::vector<MatlabArray>& arrays) {
+  std::vector<MatlabChannel> channels;
+  for (const MatlabArray& array : arrays) {
+    if (array.size() / array.channels() < min_samples || is_time(array)) {
+      continue;
+    }
+    for (std::size_t i = 0; i < array.channels(); ++i) {
+      channels.push_back(
+          {array.channels() == 1 ? array.name : fmt::format("{}:{}", array.name, i + 1), &array,
+           i});
+    }
+  }
+  return channels;
+}
+
+const MatlabChannel& chosen_of(const std::vector<MatlabChannel>& channels,
+                               const std::string& column, const std::string& file) {
+  const auto named = std::ranges::find(channels, column, &MatlabChannel::name);
+  if (named != channels.end()) {
+    return *named;
+  }
+  const auto number = core::number_in<std::size_t>(column);
+  if (number && *number >= 1 && *number <= channels.size()) {
+    return channels[*number - 1];
+  }
+  if (column.empty() && channels.size() == 1) {
+    return channels.front();
+  }
+  std::vector<std::string> names;
+  std::ranges::transform(channels, std::back_inserter(names), &MatlabChannel::name);
+  constexpr std::size_t most_named = 12;
+  const bool are_many = names.size() > most_named;
+  names.resize(std::min(names.size(), most_named));
+  throw core::InvalidInput{
+      fmt::format("{}: {} (choose one by --column: {}{})", file,
+                  column.empty() ? fmt::format("has {} channels", channels.size())
+                                 : fmt::format("--column '{}' is none of its channels", column),
+                  fmt::join(names, ", "), are_many ? " ..." : "")};
+}
+
+// By the times or the scalar of the file.
+std::optional<double> matlab_rate(mat_t* file, const std::vector<MatlabArray>& arrays,
+                                  std::size_t samples, const std::string& path) {
+  constexpr std::array names{"fs", "rate", "rate_hz", "sample_rate", "sampling_rate"};
+  const auto is_rate = [&](const MatlabArray& array) {
+    std::string name = array.name;
+    std::ranges::transform(name, name.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return array.size() == 1 && std::ranges::find(names, name) != names.end();
+  };
+  for (const MatlabArray& array : arrays) {
+    if (is_time(array) && array.size() == samples) {
+      return rate_of_times(values_of(file, array, path), [&](std::size_t) { return path; }) /
+             seconds_per_unit(array.name);
+    }
+  }
+  const auto scalar = std::ranges::find_if(arrays, is_rate);
+  return scalar == arrays.end() ? std::nullopt
+                                : std::optional{values_of(file, *scalar, path).front()};
+}
+}  // namespace
+
+Recording read_matlab_file(const std::string& file, const ReadingOptions& options) {
+  const MatlabFile opened{Mat_Open(file.c_str(), MAT_ACC_RDONLY)};
+  if (!opened) {
+    throw core::InvalidInput{file + ": cannot be read as a MATLAB file (versions 4 to 7.3)"};
+  }
+  const std::vector<MatlabArray> arrays = matlab_arrays(opened.get());
+  const std::vector<MatlabChannel> channels = matlab_channels(arrays);
+  if (channels.empty()) {
+    throw core::InvalidInput{
+        fmt::format("{}: holds no real numeric array of at least {} samples (arrays inside "
+                    "structures are not searched: save them as variables)",
+                    file, min_samples)};
+  }
+  const MatlabChannel& chosen = chosen_of(channels, options.column, file);
+  Recording recording{
+      file,
+      chosen.name,
+      0.0,
+      channel_of(values_of(opened.get(), *chosen.array, file), *chosen.array, chosen.channel),
+      {}};
+  if (!std::ranges::all_of(recording.samples,
+                           [](double sample) { return std::isfinite(sample); })) {
+    throw core::InvalidInput{
+        fmt::format("{}: {} has values that are not finite", file, chosen.name)};
+  }
+  const auto rate_hz = matlab_rate(opened.get(), arrays, recording.samples.size(), file);
+  if (!rate_hz && !(options.rate_hz > 0.0)) {
+    throw core::InvalidInput{file + ": states no rate, by times t or a scalar fs (give --rate HZ)"};
+  }
+  recording.rate_hz = agreed_rate(rate_hz, options, file, "says", recording.remarks);
+  return recording;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,135 @@
+#include "analysis/modal/recording/sampling.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr double max_rate_difference = 0.001;  // more is a mistake, not rounded times
+
+// The micro sign, and the Greek letter mu.
+std::string with_ascii_micro(const std::string& text) {
+  std::string ascii;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_micro = text.compare(i, 2, "\u00b5") == 0 || text.compare(i, 2, "\u03bc") == 0;
+    ascii += is_micro ? 'u' : text[i];
+    i += is_micro ? 1 : 0;
+  }
+  return ascii;
+}
+
+// In lower case; everything but letters becomes blanks.
+std::string letters_of(const std::string& name) {
+  std::string letters;
+  for (const char c : with_ascii_micro(name)) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_letter = byte >= 0x80 || std::isalpha(byte) != 0;
+    letters += is_letter ? static_cast<char>(std::tolower(byte)) : ' ';
+  }
+  return letters;
+}
+
+constexpr std::array<std::pair<const char*, double>, 8> units_s{{{"", 1.0},
+                                                                 {"s", 1.0},
+                                                                 {"sec", 1.0},
+                                                                 {"second", 1.0},
+                                                                 {"seconds", 1.0},
+                                                                 {"ms", 1e-3},
+                                                                 {"us", 1e-6},
+                                                                 {"ns", 1e-9}}};
+}  // namespace
+
+double seconds_per_unit(const std::string& name) {
+  std::istringstream stream{letters_of(name)};
+  std::string word;
+  std::string unit;
+  std::string rest;
+  stream >> word >> unit >> rest;
+  if (word == "x" && unit == "value" && rest.empty()) {  // LabVIEW
+    return 1.0;
+  }
+  constexpr std::array names{"t", "time", "timestamp", "zeit", "second", "seconds"};
+  if (std::ranges::find(names, word) == names.end() || !rest.empty()) {
+    return 0.0;
+  }
+  const auto* const known =
+      std::ranges::find(units_s, unit, [](const auto& one) { return one.first; });
+  return known == units_s.end() ? 0.0 : known->second;
+}
+
+namespace {
+// Start and period of the grid nearest to the times by least squares: each of them may be off.
+std::pair<double, double> uniform_grid(const std::vector<double>& times) {
+  const auto count = static_cast<double>(times.size());
+  const double middle = 0.5 * (count - 1.0);
+  double mean = 0.0;
+  double slope = 0.0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    mean += (times[i] - times.front()) / count;
+    slope += (static_cast<double>(i) - middle) * (times[i] - times.front());
+  }
+  const double period = slope / (count * (count * count - 1.0) / 12.0);
+  return {times.front() + mean - middle * period, period};
+}
+}  // namespace
+
+double rate_of_times(const std::vector<double>& times,
+                     const std::function<std::string(std::size_t)>& place) {
+  const auto [start, period] = uniform_grid(times);
+  if (!(period > 0.0)) {
+    throw core::InvalidInput{place(times.size() - 1) + ": times must ascend"};
+  }
+  double furthest = 0.0;
+  std::size_t worst_step = 1;
+  double worst_misfit = 0.0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double expected = start + period * static_cast<double>(i);
+    furthest = std::max(furthest, std::abs(times[i] - expected) / period);
+    const double misfit = std::abs(times[i] - times[i - 1] - period);
+    worst_step = misfit > worst_misfit ? i : worst_step;
+    worst_misfit = std::max(misfit, worst_misfit);
+  }
+  if (furthest > max_jitter_periods) {
+    throw core::InvalidInput{fmt::format(
+        "{}: times are up to {:.2g} periods from a uniform grid (at most {}); here the step is "
+        "{:.3g} periods: samples are missing or were not taken uniformly",
+        place(worst_step), furthest, max_jitter_periods,
+        (times[worst_step] - times[worst_step - 1]) / period)};
+  }
+  return 1.0 / period;
+}
+
+double agreed_rate(std::optional<double> of_file_hz, const ReadingOptions& options,
+                   const std::string& place, const std::string& stated,
+                   std::vector<std::string>& remarks) {
+  const bool is_given = options.rate_hz > 0.0;
+  if (!of_file_hz && !is_given) {
+    throw core::InvalidInput{place + ": has no time column (give the rate by --rate HZ)"};
+  }
+  if (of_file_hz && !(*of_file_hz > 0.0) && !(is_given && options.trusts_rate)) {
+    throw core::InvalidInput{
+        fmt::format("{}: {} {:.6g} samples a second (the right one: --rate HZ --trust-rate)", place,
+                    stated, *of_file_hz)};
+  }
+  if (!of_file_hz || !is_given) {
+    return of_file_hz.value_or(options.rate_hz);
+  }
+  if (std::abs(*of_file_hz / options.rate_hz - 1.0) > max_rate_difference) {
+    if (!options.trusts_rate) {
+      throw core::InvalidInput{
+          fmt::format("{}: {} {:.6g} samples a second, --rate {:g} (which --trust-rate takes)",
+                      place, stated, *of_file_hz, options.rate_hz)};
+    }
+    remarks.push_back(fmt::format("{} {:.6g} samples a second: {:g} were taken, by --trust-rate",
+                                  stated, *of_file_hz, options.rate_hz));
+  }
+  return options.rate_hz;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,255 @@
+// Recordings in the formats of instruments and of other programs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+#include "analysis/modal/recording/instrument_table.hpp"
+#include "analysis/modal/recording/recording.hpp"
+#include "core/error.hpp"
+#include "support/catch.hpp"
+#include "support/reference_programs.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using namespace tapstudy::analysis;
+
+namespace {
+constexpr int count = 80;
+constexpr double rate_hz = 2000.0;
+
+double sample_at(int i) {
+  return std::round(1000.0 * std::sin(0.3 * i)) / 1024.0;  // exact in single precision
+}
+
+// Rows of time and value.
+std::string rows_of(const std::string& separator, double units_per_s) {
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    text += fmt::format("{:.6g}{}{:.9g}\n", i / rate_hz * units_per_s, separator, sample_at(i));
+  }
+  return text;
+}
+
+std::string with_decimal_commas(std::string text) {
+  std::ranges::replace(text, '.', ',');
+  return text;
+}
+
+Recording read_text(const std::string& text, const ReadingOptions& options) {
+  std::istringstream stream{text};
+  return read_csv_recording(stream, "taps.csv", options);
+}
+
+void check_samples(const Recording& recording) {
+  CHECK(recording.rate_hz == Approx(rate_hz));
+  REQUIRE(recording.samples.size() == count);
+  for (int i = 0; i < count; ++i) {
+    CHECK(recording.samples[static_cast<std::size_t>(i)] == Approx(sample_at(i)));
+  }
+}
+}  // namespace
+
+TEST_CASE("a table of an instrument is a recording whatever stands above its numbers",
+          "[analysis][recordings][formats]") {
+  const auto text = GENERATE(values<std::string>({
+      rows_of(" ", 1.0),
+      "# Created by Octave 8\n# name: x\n# rows: 80\n" + rows_of("   ", 1.0),
+      "# time acc\n" + rows_of(" ", 1.0),
+      "Zeit [s];acc\n" + with_decimal_commas(rows_of(";", 1.0)),
+      "timestamp_us,acc\n" + rows_of(",", 1e6),
+      "x-axis,1\nsecond,Volt\n" + rows_of(",", 1.0),
+      "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\nDelta_X\t0,0005\n"
+      "***End_of_Header***\t\nX_Value\tAcc\tComment\n" +
+          with_decimal_commas(rows_of("\t", 1.0)),
+  }));
+  CAPTURE(text.substr(0, 60));
+  check_samples(read_text(text, {}));
+}
+
+TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused with what helps",
+          "[analysis][recordings][formats]") {
+  std::string dates = "time,acc\n";
+  std::string settings;
+  for (int i = 0; i < count; ++i) {
+    dates += fmt::format("2026-05-01T10:00:{:02}.000,{:.9g}\n", i % 60, sample_at(i));
+    settings +=
+        fmt::format("{},{:.6f},{:.6f}\n", i == 0 ? "Record Length" : "", i / rate_hz, sample_at(i));
+  }
+  CHECK_THROWS_WITH(read_text(dates, {}), Contains("taps.csv:2:") && Contains("--rate HZ"));
+  ReadingOptions given;
+  given.rate_hz = rate_hz;
+  given.column = "acc";
+  check_samples(read_text(dates, given));
+  given.column = "1";
+  CHECK_THROWS_WITH(read_text(settings, given), Contains("oscilloscope"));
+  given.column = "acc";
+  const std::string gap = testing::replaced(
+      "t,acc\n" + rows_of(",", 1.0), fmt::format("\n0.002,{:.9g}", sample_at(4)), "\n0.002,nan");
+  CHECK_THROWS_WITH(read_text(gap, given),
+                    Contains("taps.csv:6:") && Contains("a sample is missing"));
+}
+
+TEST_CASE("a rate given beside another one is refused, or taken and said if it is to be trusted",
+          "[analysis][recordings][formats]") {
+  const std::string text = "time,acc\n" + rows_of(",", 1.0);
+  ReadingOptions options;
+  options.rate_hz = 1900.0;
+  CHECK_THROWS_WITH(read_text(text, options), Contains("--trust-rate"));
+  options.trusts_rate = true;
+  const Recording recording = read_text(text, options);
+  CHECK(recording.rate_hz == 1900.0);
+  REQUIRE(recording.remarks.size() == 1);
+  CHECK_THAT(recording.remarks.front(), Contains("2000") && Contains("1900"));
+}
+
+namespace {
+// A data set 58 as the format's description lays it out, without its values.
+std::string header_58(const std::string& kind, int function_type, int value_type, int node) {
+  return fmt::format(
+      "    -1\n{}\nNONE\nNONE\nNONE\nNONE\nNONE\n"
+      "{:>5}{:>10}{:>5}{:>10} {:<10}{:>10}{:>4} {:<10}{:>10}{:>4}\n"
+      "{:>10}{:>10}{:>10}{:>13.5E}{:>13.5E}{:>13.5E}\n"
+      "        17    0    0    0 Time                 s\n"
+      "        12    0    0    0 Acc                  m/s^2\n"
+      "         0    0    0    0 NONE                 NONE\n"
+      "         0    0    0    0 NONE                 NONE\n",
+      kind, function_type, 0, 0, 0, "NONE", node, 3, "NONE", 1, 3, value_type, count, 1, 0.0,
+      1.0 / rate_hz, 0.0);
+}
+
+std::string in_text(int value_type) {
+  std::string text;
+  const int a_line = value_type == 2 ? 6 : 4;
+  for (int i = 0; i < count; ++i) {
+    text += value_type == 2 ? fmt::format("{:>13.5E}", sample_at(i))
+                            : fmt::format("{:>20.12E}", sample_at(i));
+    text += i % a_line == a_line - 1 || i == count - 1 ? "\n" : "";
+  }
+  return text;
+}
+
+template <class Float>
+std::string in_bytes(bool is_big_endian) {
+  std::string bytes;
+  for (int i = 0; i < count; ++i) {
+    const auto value = static_cast<Float>(sample_at(i));
+    std::array<char, sizeof(Float)> of_value{};
+    std::memcpy(of_value.data(), &value, sizeof(Float));
+    if (is_big_endian != (std::endian::native == std::endian::big)) {
+      std::ranges::reverse(of_value);
+    }
+    bytes.append(of_value.data(), of_value.size());
+  }
+  return bytes;
+}
+
+std::string binary_58(int value_type, bool is_big_endian, int node) {
+  const std::string bytes =
+      value_type == 2 ? in_bytes<float>(is_big_endian) : in_bytes<double>(is_big_endian);
+  const std::string kind = fmt::format("    58b{:>6}{:>6}{:>12}{:>12}{:>6}{:>6}{:>12}{:>12}",
+                                       is_big_endian ? 2 : 1, 2, 11, bytes.size(), 0, 0, 0, 0);
+  return header_58(kind, 1, value_type, node) + bytes + "\n    -1\n";
+}
+
+std::string written(const testing::TempDirectory& directory, const std::string& name,
+                    const std::string& bytes) {
+  testing::write(directory / name, bytes);
+  return directory / name;
+}
+}  // namespace
+
+TEST_CASE("time records of universal files are the same in text and bytes of either order",
+          "[analysis][recordings][formats]") {
+  const testing::TempDirectory directory;
+  const std::string units = "    -1\n   164\n         1SI\n    -1\n";
+  const auto data = GENERATE(values<std::string>(
+      {header_58("    58", 1, 2, 7) + in_text(2) + "    -1\n",
+       header_58("    58", 1, 4, 7) + in_text(4) + "    -1\n", binary_58(2, false, 7),
+       binary_58(2, true, 7), binary_58(4, false, 7), binary_58(4, true, 7)}));
+  const std::string file = written(directory, "taps.uff", units + data);
+  const Recording recording = read_recording(file, {});
+  CHECK(recording.channel == "7+Z");
+  REQUIRE(recording.samples.size() == count);
+  CHECK(recording.rate_hz == Approx(rate_hz));
+  for (int i = 0; i < count; ++i) {
+    CHECK(recording.samples[static_cast<std::size_t>(i)] == Approx(sample_at(i)).margin(1e-5));
+  }
+}
+
+TEST_CASE("of several data sets one is chosen, and what is no time record is refused in words",
+          "[analysis][recordings][formats]") {
+  const testing::TempDirectory directory;
+  const std::string record = header_58("    58", 1, 2, 7) + in_text(2) + "    -1\n";
+  const std::string response = header_58("    58", 4, 2, 8) + in_text(2) + "    -1\n";
+  ReadingOptions chosen;
+  chosen.column = "9+Z";
+  const std::string two =
+      written(directory, "two.uff", record + response + binary_58(4, true, 9) + record);
+  CHECK(read_recording(two, chosen).channel == "9+Z");
+  CHECK_THROWS_WITH(read_recording(two, {}), Contains("has 3 time records"));
+  CHECK_THROWS_WITH(read_recording(written(directory, "f.uff", response), {}),
+                    Contains("frequency responses"));
+  CHECK_THROWS_WITH(
+      read_recording(written(directory, "cut.uff", record.substr(0, record.size() - 60)), {}),
+      Contains("cut off"));
+  const std::string bytes = binary_58(4, false, 7);
+  CHECK_THROWS_WITH(
+      read_recording(written(directory, "cutb.uff", bytes.substr(0, bytes.size() - 60)), {}),
+      Contains("cut off"));
+  CHECK_THROWS_WITH(read_recording(written(directory, "no.uff", "nothing\n"), {}),
+                    Contains("holds no data set 58"));
+}
+
+TEST_CASE("arrays of a MATLAB file are what SciPy wrote, and no sound",
+          "[analysis][recordings][formats]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.mat";
+  const auto values = testing::python_numbers(
+      "from scipy.io import savemat\nx = np.round(1000 * np.sin(0.3 * np.arange(80)))\n"
+      "savemat('" +
+      file +
+      "', {'unit': 'g', 'n': 3.0, 'acc': x, 'two': np.vstack([x, 2 * x]).astype(np.int16)})\n"
+      "savemat('" +
+      (directory / "rate.mat") +
+      "', {'acc': x.astype(np.float32), 'Fs': 2000.0})\n"
+      "savemat('" +
+      (directory / "times.mat") +
+      "', {'acc': x, 't': np.arange(80) / 2000})\n"
+      "savemat('" +
+      (directory / "small.mat") + "', {'acc': x[:9]})\nout(x)\n");
+  ReadingOptions options;
+  CHECK_THROWS_WITH(read_recording(file, options),
+                    Contains("has 3 channels") && Contains("acc, two:1, two:2"));
+  options.column = "two:2";
+  CHECK_THROWS_WITH(read_recording(file, options), Contains("--rate HZ"));
+  options.rate_hz = rate_hz;
+  const Recording second = read_recording(file, options);
+  REQUIRE(second.samples.size() == values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    CHECK(second.samples[i] == 2.0 * values[i]);
+  }
+  for (const std::string name : {"rate.mat", "times.mat"}) {
+    const Recording recording = read_recording(directory / name, {});
+    CHECK(recording.rate_hz == Approx(rate_hz));
+    CHECK(recording.samples == values);
+  }
+  CHECK_THROWS_WITH(read_recording(directory / "small.mat", {}), Contains("no real numeric array"));
+  testing::write(directory / "no.mat", "this is no array");
+  CHECK_THROWS_WITH(read_recording(directory / "no.mat", {}), Contains("MATLAB"));
+}
+
+TEST_CASE("what a library takes for sound without a header is no recording",
+          "[analysis][recordings][formats]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.wav";  // a MATLAB file under another name
+  testing::python_numbers("from scipy.io import savemat\nsavemat('" + file +
+                          "', {'fs': 8000.0, 'acc': np.sin(0.3 * np.arange(800))}, "
+                          "appendmat=False)\nout([1.0])\n");
+  CHECK_THROWS_WITH(read_recording(file, {}), Contains("is no sound file"));
+  for (const std::string name : {"taps.tdms", "taps.h5", "taps.npy"}) {
+    CHECK_THROWS_WITH(read_recording(directory / name, {}), Contains("save"));
+  }
+}

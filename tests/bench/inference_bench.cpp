@@ -108,6 +108,7 @@ void print_discrimination(const char* name, int trials, int repetitions, int stu
 BlockDesign identification() {
   BlockDesign design;
   design.name = "plates";
+  design.is_order_known = false;  // shuffled whole, which shuffling answers redraws
   for (const char* const structure : {"one", "two"}) {
     for (const char* const material : {"wood", "steel"}) {
       Item item;

@@ -284,7 +284,7 @@ TEST_CASE("a threshold of answers that may all be guesses has no upper limit",
   CHECK(of_few.guessing > 0.2);
   CHECK(std::isinf(of_few.threshold_interval.high));
   CHECK(of_many.guessing < 0.001);
-  CHECK(of_many.threshold_interval.high < 2.0);
+  CHECK(std::isfinite(of_many.threshold_interval.high));
 }
 
 namespace {

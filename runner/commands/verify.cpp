@@ -192,9 +192,7 @@ bool is_older(const fs::path& file, const fs::path& than) {
   const auto of_other = fs::last_write_time(than, error);
   return !error && of_file < of_other;
 }
-}  // namespace
 
-namespace {
 // Earlier versions wrote it beside study.db.
 std::string directory_of_report(const std::string& study) {
   const fs::path folder = fs::path{study} / report_folder;

@@ -64,7 +64,8 @@ int position_of(const FreeDofs& dofs, int node, std::size_t axis) {
 
 FreeDofs dofs_of(const TetMesh& larger, const FreeDofs& given) {
   std::vector<bool> held(3 * static_cast<std::size_t>(larger.nodes_m.rows()), false);
-  std::ranges::transform(given.position, held.begin(), [](int position) { return position < 0; });
+  std::transform(given.position.begin(), given.position.end(), held.begin(),
+                 [](int position) { return position < 0; });
   for (const AddedUnknown& one : all_added(larger)) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       held[3 * static_cast<std::size_t>(one.number) + axis] = std::ranges::all_of(

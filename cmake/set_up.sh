@@ -3,7 +3,9 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 is_installed() { dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'ok installed'; }
-is_available() { LC_ALL=C apt-cache policy "$1" 2>/dev/null | grep -q '^  Candidate: [^(]'; }
+# Not by a pipe: apt-cache fails if its reader ends at the first match, which pipefail would take for
+# a package that the release has not.
+is_available() { grep -q '^  Candidate: [^(]' <<<"$(LC_ALL=C apt-cache policy "$1" 2>/dev/null)"; }
 
 # missing_lines LIST…: the lines none of whose alternatives is installed (packages.txt says how they
 # are written). packages_to_install LIST…: the first alternative of each that this release has.

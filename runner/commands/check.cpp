@@ -99,8 +99,9 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
       fmt::print("    {}\n", describe_errors(errors));
       const Eigen::Index unfelt = modes_out_of_reach(*plate, own);
       if (unfelt > 0) {
-        fmt::print("    {} of the modes hardly move at any tapping point (1 % of the strongest)\n",
-                   unfelt);
+        fmt::print(
+            "    modes that move less than 1 % of the strongest at every tapping point: {}\n",
+            unfelt);
       }
       warnings += warning_of_errors(stimulus.name, errors);
     }

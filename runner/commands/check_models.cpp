@@ -245,8 +245,9 @@ std::string describe_errors(const core::FrequencyErrors& errors) {
           ? fmt::format(", and at least {} in the band",
                         counted(static_cast<std::size_t>(errors.modes_at_least), "mode"))
           : "";
-  return fmt::format("frequencies too high by {} at most, by elements of the next order{}",
-                     core::describe_error(errors.largest()), missing);
+  return fmt::format(
+      "estimated error: frequencies are too high by up to {}, by elements of the next order{}",
+      core::describe_error(errors.largest()), missing);
 }
 
 std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors) {

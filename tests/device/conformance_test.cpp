@@ -161,7 +161,7 @@ class SpidarRow final : public BackEnd {
     REQUIRE(on_bus_.spidar.home() == TickFault::none);
   }
   Begun begin_on_usb(const std::string& name) {
-    using enum FakeBus::Trouble;
+    using enum testing::FakeUsbfs::Trouble;
     const auto once = [&](FakeBus::Trouble trouble, TickFault fault, bool is_confirmed = true) {
       on_bus_.bus.plan(trouble);
       return Expected{{fault}, is_confirmed};

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <iterator>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <string_view>
@@ -87,18 +86,6 @@ std::optional<bool> right_or_wrong(const std::string& cell) {
   return is_one_of(right)   ? std::optional{true}
          : is_one_of(wrong) ? std::optional{false}
                             : std::nullopt;
-}
-
-// {"Q0": "oak"} is the answer to the one question of a survey.
-std::string only_answer_in(const std::string& cell) {
-  if (!cell.starts_with('{')) {
-    return cell;
-  }
-  const auto answers = nlohmann::ordered_json::parse(cell, nullptr, false);
-  if (!answers.is_object() || answers.size() != 1 || answers.front().is_structured()) {
-    return cell;
-  }
-  return answers.front().is_string() ? answers.front().get<std::string>() : answers.front().dump();
 }
 
 // Reads one file.

@@ -65,8 +65,8 @@ std::string p_value(double p) {
 
 std::string over_participants(const Proportion& all, const MeanShare& over) {
   const std::string mean = percent(over.mean);
-  const std::string range = over.interval ? "95 % CI " + percent_range(*over.interval)
-                                          : "no CI: two do not tell how much participants differ";
+  const std::string range =
+      over.interval ? "95 % CI " + percent_range(*over.interval) : "no CI for so few";
   if (mean != percent(all.value())) {
     return fmt::format("(mean of {} participants {}, {})", over.participants, mean, range);
   }

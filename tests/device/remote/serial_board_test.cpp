@@ -179,7 +179,7 @@ TEST_CASE("a microcontroller at a serial port is a device, and noise on its line
       told_n = hand.detail().achieved_n.y();
       REQUIRE((std::isnan(told_n) || told_n == 0.0 || told_n == 2.0 || told_n == 3.0));
     }
-    CHECK(state.position_m == core::Vec3{double{0.01F}, double{0.02F}, double{0.03F}});
+    CHECK(state.position_m == Eigen::Vector3f{0.01F, 0.02F, 0.03F}.cast<double>());
   }
 }
 

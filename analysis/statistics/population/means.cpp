@@ -382,22 +382,30 @@ class CensoredNormal {
   double high_{-std::numeric_limits<double>::infinity()};
 };
 
+// The least that a difference can be in size.
+double size_of(const Interval& range) {
+  const bool may_be_none = range.low < 0.0 && range.high > 0.0;
+  return may_be_none ? 0.0 : std::min(std::abs(range.low), std::abs(range.high));
+}
+
+// Ties share the mean of their ranks.
+double rank_of(const Interval& range, const std::vector<Interval>& differences) {
+  const double own = size_of(range);
+  double rank = 0.5;
+  for (const Interval& other : differences) {
+    const double size = size_of(other);
+    rank += size < own ? 1.0 : size == own ? 0.5 : 0.0;
+  }
+  return rank;
+}
+
 // Differences signed, as large as their ranks by size are.
 std::vector<double> signed_ranks(const std::vector<Interval>& differences) {
-  const auto size = [](const Interval& range) {
-    return range.low < 0.0 && range.high > 0.0
-               ? 0.0
-               : std::min(std::abs(range.low), std::abs(range.high));
-  };
   std::vector<double> ranks;
   for (const Interval& range : differences) {
-    const double own = size(range);
-    double rank = 0.5;
-    for (const Interval& other : differences) {
-      rank += size(other) < own ? 1.0 : size(other) == own ? 0.5 : 0.0;
-    }
     const bool has_side = !is_exact(range) && (range.low >= 0.0 || range.high <= 0.0);
-    ranks.push_back(own == 0.0 && !has_side ? 0.0 : range.low >= 0.0 ? rank : -rank);
+    const double rank = size_of(range) == 0.0 && !has_side ? 0.0 : rank_of(range, differences);
+    ranks.push_back(range.low >= 0.0 ? rank : -rank);
   }
   return ranks;
 }

@@ -12,14 +12,14 @@
 namespace tapstudy::core {
 namespace {
 std::string too_large(int dofs, Eigen::Index vectors) {
-  if (dofs <= max_enriched_dofs &&
+  if (dofs <= max_enriched_dofs && vectors <= max_enriched_vectors &&
       static_cast<double>(dofs) * static_cast<double>(vectors) <= max_enriched_entries) {
     return {};
   }
   return fmt::format(
-      "elements of the next order have {} unknowns for {} modes, more than the {} or "
+      "elements of the next order have {} unknowns for {} modes, more than the {}, the {} or "
       "the product of {:.0g} to which the error is estimated",
-      dofs, vectors, max_enriched_dofs, max_enriched_entries);
+      dofs, vectors, max_enriched_dofs, max_enriched_vectors, max_enriched_entries);
 }
 
 EnrichedBody enriched_body(const Plate& plate, const Material& material, const DiscreteBody& body) {

@@ -6,7 +6,9 @@
 namespace tapstudy::core {
 // Unknowns of the larger space times vectors (modes and a few more) up to which an error is
 // estimated: 0.7 GB beside the larger space's matrices, which have at most `max_enriched_dofs`.
+// Vectors are made orthogonal to each other in every step: hundreds take longer than the model.
 inline constexpr double max_enriched_entries = 6e6;
+inline constexpr int max_enriched_vectors = 250;
 inline constexpr int max_enriched_dofs = 250000;
 
 // How far these modes would fall if the elements were of the next order. Hierarchic a posteriori

@@ -115,34 +115,37 @@ std::vector<Face> faces_of(const TetMesh& mesh) {
   return faces;
 }
 
-// The rows with a number for each of their first `count` edges appended.
-TetMesh::Indices with_edges(const TetMesh::Indices& nodes, std::size_t count,
-                            const std::vector<Edge>& edges, Eigen::Index first) {
+// The rows with a number for each of their first `count` edges or faces appended, whose corners
+// `part_of` gives; `parts` are all of the mesh, sorted.
+template <class Part, class PartOf>
+TetMesh::Indices with_numbers(const TetMesh::Indices& nodes, std::size_t count,
+                              const std::vector<Part>& parts, Eigen::Index first,
+                              const PartOf& part_of) {
   TetMesh::Indices rows{nodes.rows(), nodes.cols() + static_cast<Eigen::Index>(count)};
   rows.leftCols(nodes.cols()) = nodes;
   for (Eigen::Index row = 0; row < nodes.rows(); ++row) {
     for (std::size_t i = 0; i < count; ++i) {
-      const auto found = std::ranges::lower_bound(edges, edge_of(nodes, row, tet_edges.at(i)));
+      const auto found = std::ranges::lower_bound(parts, part_of(row, i));
       rows(row, nodes.cols() + static_cast<Eigen::Index>(i)) =
-          static_cast<int>(first + (found - edges.begin()));
+          static_cast<int>(first + (found - parts.begin()));
     }
   }
   return rows;
 }
 
-// Likewise for each of their first `count` faces; their corners are their first columns.
+TetMesh::Indices with_edges(const TetMesh::Indices& nodes, std::size_t count,
+                            const std::vector<Edge>& edges, Eigen::Index first) {
+  return with_numbers(nodes, count, edges, first, [&](Eigen::Index row, std::size_t i) {
+    return edge_of(nodes, row, tet_edges.at(i));
+  });
+}
+
+// The corners of the faces are their rows' first columns.
 TetMesh::Indices with_faces(const TetMesh::Indices& nodes, std::size_t count,
                             const std::vector<Face>& faces, Eigen::Index first) {
-  TetMesh::Indices rows{nodes.rows(), nodes.cols() + static_cast<Eigen::Index>(count)};
-  rows.leftCols(nodes.cols()) = nodes;
-  for (Eigen::Index row = 0; row < nodes.rows(); ++row) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto found = std::ranges::lower_bound(faces, face_of(nodes, row, tet_faces.at(i)));
-      rows(row, nodes.cols() + static_cast<Eigen::Index>(i)) =
-          static_cast<int>(first + (found - faces.begin()));
-    }
-  }
-  return rows;
+  return with_numbers(nodes, count, faces, first, [&](Eigen::Index row, std::size_t i) {
+    return face_of(nodes, row, tet_faces.at(i));
+  });
 }
 
 // The nodes, and after them the middle of each of these edges or faces.

@@ -292,15 +292,6 @@ class RemoteRow final : public BackEnd {
   bool exerts_force() override { return program_.exerted_n != 0.0; }
 
  private:
-  class Clock final : public testing::SteadyClock {
-   public:
-    explicit Clock(RemoteProgram& program) : program_{program} {}
-    Nanoseconds now() noexcept override { return program_.now(); }
-    void pass_to(Nanoseconds moment) noexcept override { program_.wait_until(moment); }
-
-   private:
-    RemoteProgram& program_;
-  };
   Expected meet(RemoteTrouble trouble, std::vector<TickFault> found, bool is_confirmed = true) {
     program_.trouble = trouble;
     return {std::move(found), is_confirmed};
@@ -368,7 +359,7 @@ class RemoteRow final : public BackEnd {
   std::unique_ptr<RemoteProgram> owned_;
   RemoteProgram& program_{*owned_};
   device::RemoteHand hand_{40'000, {max_reply}, std::move(owned_)};
-  Clock clock_{program_};
+  testing::ProgramClock clock_{program_};
 };
 
 // Hands that exert nothing on anybody.

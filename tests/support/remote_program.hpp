@@ -13,6 +13,7 @@
 #include "core/random/rng.hpp"
 #include "device/remote/datagram_pipe.hpp"
 #include "device/remote/packets.hpp"
+#include "support/staged_loop.hpp"
 namespace tapstudy::testing {
 enum class RemoteTrouble {
   none,
@@ -271,5 +272,16 @@ class RemoteProgram final : public device::DatagramPipe {
   std::deque<Bytes> requests_;
   std::deque<Reply> replies_;
   bool is_refused_{false};
+};
+
+// The program's own time.
+class ProgramClock final : public SteadyClock {
+ public:
+  explicit ProgramClock(RemoteProgram& program) : program_{program} {}
+  device::Nanoseconds now() noexcept override { return program_.now(); }
+  void pass_to(device::Nanoseconds moment) noexcept override { program_.wait_until(moment); }
+
+ private:
+  RemoteProgram& program_;
 };
 }  // namespace tapstudy::testing

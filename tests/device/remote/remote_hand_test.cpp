@@ -239,22 +239,13 @@ TEST_CASE("a remote stop is confirmed by a reply, or it is not a stop",
 
 using device::DatagramOutcome;
 using device::Nanoseconds;
+using testing::ProgramClock;
 using testing::RemoteProgram;
 using testing::RemoteTrouble;
 using namespace std::chrono_literals;
 
 namespace {
 constexpr auto max_reply = 5ms;
-
-class ProgramClock final : public testing::SteadyClock {
- public:
-  explicit ProgramClock(RemoteProgram& program) : program_{program} {}
-  Nanoseconds now() noexcept override { return program_.now(); }
-  void pass_to(Nanoseconds moment) noexcept override { program_.wait_until(moment); }
-
- private:
-  RemoteProgram& program_;
-};
 
 struct Stage {
   explicit Stage(int version = 2) : owned{std::make_unique<RemoteProgram>(version)} {}

@@ -20,8 +20,13 @@ struct OscTarget {
   std::string host{"127.0.0.1"};
   int port{};
 };
+struct LslStreams {
+  std::string name{"tapstudy"};
+  bool has_forces{false};  // a second stream, of every tick's force
+};
 struct MarkerSettings {
   std::optional<OscTarget> osc;
+  std::optional<LslStreams> lsl{};
   std::string lines;  // serial port, named pipe or file; empty: none
 };
 

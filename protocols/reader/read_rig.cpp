@@ -173,6 +173,16 @@ void read_markers(MapReader& top, const std::string& file, Rig& rig) {
                                       target.host);
                          target.port = osc.integer({"port", "UDP port"}, 1, 65'535);
                        });
+            reader.map({"lsl",
+                        "a stream of the Lab Streaming Layer, whose library liblsl must be "
+                        "installed; unset: none"},
+                       Presence::optional, [&](MapReader& lsl) {
+                         LslStreams& streams = rig.markers.lsl.emplace();
+                         streams.name = lsl.text({"name", "of the stream"}, streams.name);
+                         streams.has_forces = lsl.yes_or_no(
+                             {"forces", "a second stream, NAME_force, of the force in every tick"},
+                             streams.has_forces);
+                       });
             if (reader.has("lines")) {
               rig.markers.lines =
                   (std::filesystem::path{file}.parent_path() /

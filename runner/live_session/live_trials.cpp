@@ -123,18 +123,18 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
       desk_{{parts.live.protocol, parts.session.row.id, is_excluded(parts),
              [this] { return now_s(); },
              [this](const results::OperatorActionRow& action) {
-               parts_.markers.send({action.session_id, action.t_s, "operator", action.number,
-                                    fmt::format("{} {}", action.action, action.detail)});
+               send({action.session_id, action.t_s, "operator", action.number,
+                     fmt::format("{} {}", action.action, action.detail)});
              }},
             recorder_},
       tap_markers_{parts.session.row.id,
-                   [this](const results::SessionEventRow& marker) { parts_.markers.send(marker); }},
+                   [this](const results::SessionEventRow& marker) { send(marker); }},
       at_terminal_{parts.input, parts.commands, [this] { device_->get_ready(); }},
       console_{console_of(parts, desk_, [this] { device_->get_ready(); })},
       states_{parts.session.row.id, [this] { return now_s(); },
               [this](const results::SessionEventRow& change) {
                 trial_ = change.number.value_or(0);
-                parts_.markers.send(change);
+                send(change);
                 if (console_) {
                   console_->note_state(change);
                 }
@@ -152,8 +152,8 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
                console_ ? console_->participant() : at_terminal_, desk_, states_,
                parts.session.row.seed,
                [this](const results::EventRow& event, int trial) {
-                 parts_.markers.send({parts_.session.row.id, now_s(), event.kind, trial,
-                                      fmt::format("{:g}", event.value)});
+                 send({parts_.session.row.id, now_s(), event.kind, trial,
+                       fmt::format("{:g}", event.value)});
                }},
               recorder_,
               parts.session.earlier} {
@@ -162,13 +162,15 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
     if (console_) {
       console_->watch(sample);
     }
+    parts_.markers.send(
+        ForceSample{sample.force_n, std::chrono::nanoseconds{at.time_since_epoch()}.count()});
     tap_markers_.add(sample, std::chrono::duration<double>(at - begun_).count(), trial_);
   });
 }
 
 std::function<void(std::string_view, const std::string&)> LiveTrials::masking_marker() {
   return [this](std::string_view state, const std::string& detail) {
-    parts_.markers.send({parts_.session.row.id, now_s(), std::string{state}, trial_, detail});
+    send({parts_.session.row.id, now_s(), std::string{state}, trial_, detail});
   };
 }
 
@@ -177,6 +179,10 @@ std::function<void(std::string_view, const std::string&)> LiveTrials::masking_ma
 // then.
 void LiveTrials::store_presentation() {
   recorder_.note(states_.take_events());
+}
+
+void LiveTrials::send(const results::SessionEventRow& change) {
+  parts_.markers.send(marker_of(change, begun_));
 }
 
 double LiveTrials::now_s() const {

@@ -43,7 +43,8 @@ class LiveTrials {
 
  private:
   using Clock = std::chrono::steady_clock;
-  double now_s() const;  // from the session's begin
+  double now_s() const;                               // from the session's begin
+  void send(const results::SessionEventRow& change);  // as a marker
   void store_presentation();
   std::function<void(std::string_view state, const std::string& detail)> masking_marker();
 

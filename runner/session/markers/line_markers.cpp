@@ -1,10 +1,12 @@
 #include <fcntl.h>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -61,14 +63,14 @@ class LineMarkers final : public MarkerOutput {
   LineMarkers& operator=(LineMarkers&&) = delete;
   std::string name() const override { return "lines to " + path_; }
 
-  Sent send(const results::SessionEventRow& change) override {
+  Sent send(const Marker& marker) override {
     if (descriptor_ < 0) {
       descriptor_ = opened(path_);
     }
     if (descriptor_ < 0 || !has_written_rest()) {
       return Sent::no;
     }
-    rest_ = line_of(change);
+    rest_ = line_of(marker);
     const std::size_t whole = rest_.size();
     if (has_written_rest() || (descriptor_ >= 0 && rest_.size() < whole)) {
       return Sent::yes;
@@ -110,12 +112,18 @@ class LineMarkers final : public MarkerOutput {
 };
 }  // namespace
 
-std::string line_of(const results::SessionEventRow& change) {
+std::string line_of(const Marker& marker) {
+  const results::SessionEventRow& change = marker.change;
   std::string detail = core::cut_to(change.detail, max_detail_bytes);
   std::ranges::replace_if(
       detail, [](unsigned char byte) { return byte < ' '; }, ' ');
-  return fmt::format("{:.6f}\t{}\t{}\t{}\n", change.t_s, change.state, change.number.value_or(-1),
-                     detail);
+  constexpr std::int64_t ns_per_s = 1'000'000'000;
+  constexpr std::int64_t ns_per_us = 1000;
+  const std::time_t second = marker.utc_ns / ns_per_s;
+  return fmt::format("{:.6f}\t{}\t{}\t{}\t{:.6f}\t{:%FT%T}.{:06}Z\n", change.t_s, change.state,
+                     change.number.value_or(-1), detail,
+                     static_cast<double>(marker.monotonic_ns) / static_cast<double>(ns_per_s),
+                     fmt::gmtime(second), marker.utc_ns % ns_per_s / ns_per_us);
 }
 
 std::unique_ptr<MarkerOutput> open_line_markers(const std::string& path) {

@@ -5,9 +5,23 @@
 #include "runner/session/markers/marker_output.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
+Marker marker_of(const results::SessionEventRow& change,
+                 std::chrono::steady_clock::time_point begun) {
+  using std::chrono::nanoseconds;
+  const auto at =
+      begun + std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>{change.t_s});
+  const nanoseconds age = std::chrono::steady_clock::now() - at;
+  const auto utc = std::chrono::system_clock::now() - age;
+  return {change, nanoseconds{at.time_since_epoch()}.count(),
+          nanoseconds{utc.time_since_epoch()}.count()};
+}
+
 Markers::Markers(const protocols::MarkerSettings& settings) {
   if (settings.osc) {
     outputs_.push_back({open_osc_markers(*settings.osc)});
+  }
+  if (settings.lsl) {
+    outputs_.push_back({open_lsl_markers(*settings.lsl)});
   }
   if (!settings.lines.empty()) {
     outputs_.push_back({open_line_markers(settings.lines)});
@@ -22,13 +36,20 @@ Markers::~Markers() {
   }
 }
 
-void Markers::send(const results::SessionEventRow& change) {
+void Markers::send(const Marker& marker) {
   const std::lock_guard lock{mutex_};
   for (Counted& counted : outputs_) {
-    if (counted.output->send(change) == Sent::no && counted.lost++ == 0) {
+    if (counted.output->send(marker) == Sent::no && counted.lost++ == 0) {
       warn(fmt::format("markers, {}: '{}' could not be delivered; the session continues",
-                       counted.output->name(), change.state));
+                       counted.output->name(), marker.change.state));
     }
+  }
+}
+
+void Markers::send(const ForceSample& sample) {
+  const std::lock_guard lock{mutex_};
+  for (Counted& counted : outputs_) {
+    counted.output->send(sample);
   }
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -11,6 +12,10 @@
 #include "results/traces/trace_collector.hpp"
 #include "runner/session/markers/marker_output.hpp"
 namespace tapstudy::runner {
+// begun: from when the times of changes count.
+Marker marker_of(const results::SessionEventRow& change,
+                 std::chrono::steady_clock::time_point begun);
+
 // All that a rig asks to be told of what the session does, from any thread. What is lost is
 // counted; of each output that loses markers the operator is warned once, and told at the end how
 // many they were.
@@ -23,7 +28,8 @@ class Markers {
   Markers& operator=(const Markers&) = delete;
   Markers(Markers&&) = delete;
   Markers& operator=(Markers&&) = delete;
-  void send(const results::SessionEventRow& change);
+  void send(const Marker& marker);
+  void send(const ForceSample& sample);
   std::int64_t lost() const;
 
  private:

@@ -32,17 +32,28 @@ std::string numeric_host(const std::string& host) {
   return numeric.data();
 }
 
+// OSC has the time of NTP: seconds since 1900 and their fraction in 32 bits each.
+lo_timetag timetag_of(std::int64_t utc_ns) {
+  constexpr std::int64_t from_1900_to_1970_s = 2'208'988'800;
+  constexpr std::int64_t ns_per_s = 1'000'000'000;
+  return {static_cast<std::uint32_t>(utc_ns / ns_per_s + from_1900_to_1970_s),
+          static_cast<std::uint32_t>((utc_ns % ns_per_s << 32U) / ns_per_s)};
+}
+
 class OscMarkers final : public MarkerOutput {
  public:
   explicit OscMarkers(const protocols::OscTarget& target)
       : name_{fmt::format("OSC to {}:{}", target.host, target.port)},
         address_{lo_address_new(numeric_host(target.host).c_str(),
                                 std::to_string(target.port).c_str())} {}
-  Sent send(const results::SessionEventRow& change) override {
+  Sent send(const Marker& marker) override {
+    const results::SessionEventRow& change = marker.change;
     const lo_message message = lo_message_new();
     lo_message_add_double(message, change.t_s);
     lo_message_add_int32(message, change.number.value_or(-1));
     lo_message_add_string(message, change.detail.c_str());
+    lo_message_add_double(message, 1e-9 * static_cast<double>(marker.monotonic_ns));
+    lo_message_add_timetag(message, timetag_of(marker.utc_ns));
     const int sent =
         lo_send_message(address_.get(), ("/tapstudy/" + change.state).c_str(), message);
     lo_message_free(message);

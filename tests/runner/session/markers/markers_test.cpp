@@ -27,9 +27,16 @@ using runner::Sent;
 using testing::TempDirectory;
 
 namespace {
-const SessionEventRow change{1, 12.25, "faulted", 3, "the device did not reply"};
-const SessionEventRow between{1, 13.5, "resting", std::nullopt, ""};
-const std::string line = "12.250000\tfaulted\t3\tthe device did not reply\n";
+// Both clocks as `date --utc --date @1769850600.5` has them.
+const runner::Marker change{{1, 12.25, "faulted", 3, "the device did not reply"},
+                            4'000'250'000'000,
+                            1'769'850'600'500'000'000};
+const runner::Marker between{
+    {1, 13.5, "resting", std::nullopt, ""}, 4'001'500'000'000, 1'769'850'601'750'000'000};
+const std::string line =
+    "12.250000\tfaulted\t3\tthe device did not reply\t4000.250000\t2026-01-31T09:10:00.500000Z\n";
+const std::string line_between =
+    "13.500000\tresting\t-1\t\t4001.500000\t2026-01-31T09:10:01.750000Z\n";
 
 // liblo aligns arguments to 4 bytes, less than their union asks for.
 template <class Value>
@@ -42,18 +49,21 @@ Value value_of(const void* argument) {
 // liblo's own server, on a free port.
 class Receiver {
  public:
-  using Received = std::tuple<std::string, std::string, double, int, std::string>;
+  using Received = std::tuple<std::string, std::string, double, int, std::string, double, double>;
   Receiver() : server_{lo_server_new(nullptr, nullptr)} {
     REQUIRE(server_ != nullptr);
     lo_server_add_method(
         server_, nullptr, nullptr,
         [](const char* path, const char* types, lo_arg** arguments, int count, lo_message,
            void* to) {
-          REQUIRE(count == 3);
+          REQUIRE(count == 5);
           const void* const text = arguments[2];
+          const auto utc = value_of<lo_timetag>(arguments[4]);
+          constexpr double from_1900_to_1970_s = 2'208'988'800.0;
           static_cast<std::vector<Received>*>(to)->emplace_back(
               path, types, value_of<double>(arguments[0]), value_of<std::int32_t>(arguments[1]),
-              static_cast<const char*>(text));
+              static_cast<const char*>(text), value_of<double>(arguments[3]),
+              utc.sec - from_1900_to_1970_s + utc.frac / 4'294'967'296.0);
           return 0;
         },
         &received);
@@ -126,9 +136,10 @@ TEST_CASE("an OSC receiver gets each change with its time, trial and detail", "[
   CHECK(osc->send(between) == Sent::yes);
   receiver.receive(2);
   using Received = Receiver::Received;
-  CHECK(receiver.received[0] ==
-        Received{"/tapstudy/faulted", "dis", 12.25, 3, "the device did not reply"});
-  CHECK(receiver.received[1] == Received{"/tapstudy/resting", "dis", 13.5, -1, ""});
+  CHECK(receiver.received[0] == Received{"/tapstudy/faulted", "disdt", 12.25, 3,
+                                         "the device did not reply", 4000.25, 1'769'850'600.5});
+  CHECK(receiver.received[1] ==
+        Received{"/tapstudy/resting", "disdt", 13.5, -1, "", 4001.5, 1'769'850'601.75});
 }
 
 TEST_CASE("a host that is not known is refused before the session", "[runner][markers]") {
@@ -139,21 +150,34 @@ TEST_CASE("a host that is not known is refused before the session", "[runner][ma
 TEST_CASE("a session's states are told to whoever listens, the first one too",
           "[runner][markers]") {
   std::vector<std::string> told;
-  runner::SessionStates states{
-      1, [] { return 2.0; },
-      [&](const SessionEventRow& row) { told.push_back(runner::line_of(row)); }};
+  runner::SessionStates states{1, [] { return 2.0; },
+                               [&](const SessionEventRow& row) {
+                                 told.push_back(fmt::format("{} {}", row.t_s, row.state));
+                               }};
   states.enter(runner::SessionState::ready, 4);
-  CHECK(told == std::vector<std::string>{"2.000000\tbegun\t-1\t\n", "2.000000\tready\t4\t\n"});
+  CHECK(told == std::vector<std::string>{"2 begun", "2 ready"});
   CHECK(states.take_events().size() == 2);
 }
 
-TEST_CASE("a line stays one line of four columns", "[runner][markers]") {
-  SessionEventRow odd = change;
-  odd.detail = "a\tb\nc" + std::string(10'000, 'x');
+TEST_CASE("a line stays one line of six columns", "[runner][markers]") {
+  runner::Marker odd = change;
+  odd.change.detail = "a\tb\nc" + std::string(10'000, 'x');
   const std::string text = runner::line_of(odd);
-  CHECK(std::ranges::count(text, '\t') == 3);
+  CHECK(std::ranges::count(text, '\t') == 5);
   CHECK(std::ranges::count(text, '\n') == 1);
   CHECK(text.size() < 4096);  // PIPE_BUF
+}
+
+TEST_CASE("a marker's clocks are those of its change, however late it is sent",
+          "[runner][markers]") {
+  const auto begun = std::chrono::steady_clock::now() - std::chrono::seconds{3600};
+  const runner::Marker early = runner::marker_of({1, 10.0, "impact", 1, ""}, begun);
+  const runner::Marker late = runner::marker_of({1, 3500.0, "impact", 1, ""}, begun);
+  const std::chrono::nanoseconds begun_ns = begun.time_since_epoch();
+  CHECK(early.monotonic_ns == begun_ns.count() + 10'000'000'000);
+  CHECK(late.monotonic_ns - early.monotonic_ns == 3'490'000'000'000);
+  // as far apart by the other clock, but for its adjustment between two readings
+  CHECK(1e-9 * static_cast<double>(late.utc_ns - early.utc_ns) == Approx(3490.0).epsilon(1e-6));
 }
 
 TEST_CASE("a file is made, and appended to", "[runner][markers]") {
@@ -161,7 +185,7 @@ TEST_CASE("a file is made, and appended to", "[runner][markers]") {
   const std::string file = directory / "markers.tsv";
   CHECK(runner::open_line_markers(file)->send(change) == Sent::yes);
   CHECK(runner::open_line_markers(file)->send(between) == Sent::yes);
-  CHECK(testing::contents(file) == line + "13.500000\tresting\t-1\t\n");
+  CHECK(testing::contents(file) == line + line_between);
   testing::write(directory / "notes.txt", "not a marker\n");
   CHECK_THROWS_WITH(runner::open_line_markers(directory / "notes.txt"),
                     Contains("holds something other than markers"));

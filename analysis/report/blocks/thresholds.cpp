@@ -22,7 +22,7 @@ using results::AnswerRow;
 constexpr double max_lapse = 0.1;
 constexpr std::uint64_t draws_seed = 1;
 constexpr double max_own_guess = 0.85;
-// Levels of all participants together; about a hundred take a second of one processor.
+// Levels of all participants together for which deviances are drawn and priors are varied.
 constexpr std::size_t most_levels_examined = 1000;
 
 void add_answer(ParticipantThreshold& person, const BlockDesign& design, const AnswerRow& answer) {
@@ -88,7 +88,7 @@ void estimate(ParticipantThreshold& person, const PsychometricModel& model,
 }
 
 void add_posterior(ParticipantThreshold& person, const PsychometricModel& model,
-                   const std::vector<Level>& levels, bool is_for_main_results) {
+                   const std::vector<Level>& levels, bool is_examined) {
   constexpr double confidence = 0.95;
   const auto with = [&](double breadth) {
     return psychometric_posterior(model, levels, confidence, breadth);
@@ -98,7 +98,7 @@ void add_posterior(ParticipantThreshold& person, const PsychometricModel& model,
     person.posterior = posterior.estimates;
     const bool is_guess_free =
         model.guess.low < model.guess.high;  // which takes eight times longer
-    if (posterior.estimates && !is_for_main_results && !is_guess_free) {
+    if (posterior.estimates && is_examined && !is_guess_free) {
       person.narrower = with(0.5 * prior_breadth).estimates;
       person.broader = with(2.0 * prior_breadth).estimates;
     }
@@ -182,16 +182,14 @@ ThresholdResults participant_thresholds(const BlockDesign& design,
   for (const ParticipantThreshold& person : results.participants) {
     levels += person.levels.size();
   }
-  results.has_posteriors = levels <= most_levels_examined;
-  results.draws = results.has_posteriors && !design.is_for_main_results ? draws_of_fit : 0;
+  const bool is_examined = levels <= most_levels_examined && !design.is_for_main_results;
+  results.draws = is_examined ? draws_of_fit : 0;
   const PsychometricModel model = model_of(design);
   parallel_for(results.participants.size(), 0, [&](std::size_t i) {
     ParticipantThreshold& person = results.participants[i];
     const std::vector<Level> fitted = fitted_levels(person, design);
     estimate(person, model, fitted, results.draws);
-    if (results.has_posteriors) {
-      add_posterior(person, model, fitted, design.is_for_main_results);
-    }
+    add_posterior(person, model, fitted, is_examined);
   });
   results.mean_log = mean_of(results.participants);
   return results;
@@ -221,21 +219,18 @@ CitingText describe_d_prime(const BlockDesign& design) {
 }
 
 CitingText words_of_prior(const ThresholdResults& results) {
-  return results.has_posteriors
-             ? core::citing(
-                   "Posteriors: beta-binomial answers; priors of the form of {}: the threshold "
-                   "even "
-                   "over the levels presented, which span R, falling to 0 at 1.5 R beyond them; "
-                   "the "
-                   "width of the function (from 5 to 95 %) even from two gaps of levels to 3 R, "
-                   "falling to 0 at 9 R; lapses beta(1, 10). The table of priors has thresholds "
-                   "with "
-                   "half and twice these ranges: where they differ, the answers tell little. An "
-                   "upper end is infinite where the answers do not tell a threshold from guesses "
-                   "at "
-                   "every level (probability above .025, both as likely before).",
-                   "Schütt et al. 2016"_source)
-             : "Posteriors are not computed for so many levels.";
+  return core::citing(
+      "Posteriors: beta-binomial answers; priors of the form of {}: the threshold even over the "
+      "levels presented, which span R, falling to 0 at 1.5 R beyond them; the width of the "
+      "function "
+      "(from 5 to 95 %) even from two gaps of levels to 3 R, falling to 0 at 9 R; lapses beta(1, "
+      "10). {} An upper end is infinite where the answers do not tell a threshold from guesses at "
+      "every level (probability above .025, both as likely before).",
+      "Schütt et al. 2016"_source,
+      results.draws > 0
+          ? "The table of priors has thresholds with half and twice these ranges: where they "
+            "differ, the answers tell little."
+          : "Thresholds with other priors are not computed for so many levels.");
 }
 
 // Catch trials, at 0, aside.
@@ -306,9 +301,7 @@ std::vector<CitingText> threshold_remarks(const BlockDesign& design,
       fmt::format("Thresholds: {} of a {} function of the level, {}, lapse rate "
                   "from 0 to 0.1. At the threshold the function "
                   "without guesses and lapses is at {:.0f} %.",
-                  results.has_posteriors ? "posterior medians with 95 % credible intervals"
-                                         : "maximum likelihood with profile intervals",
-                  core::row_of(design.shape).name,
+                  "posterior medians with 95 % credible intervals", core::row_of(design.shape).name,
                   design.has_own_guess_rate
                       ? "guess rate free, with the false alarms as answers at the level 0"
                       : fmt::format("guess rate {:.3g} fixed", design.guess_rate),

@@ -64,7 +64,6 @@ struct MeanLogThreshold {
 struct ThresholdResults {
   std::vector<ParticipantThreshold> participants;  // by name
   int draws{};                                     // of the tests of fit; 0: not made
-  bool has_posteriors{};                           // they were computed
   std::optional<MeanLogThreshold> mean_log;        // of two thresholds or more
 };
 

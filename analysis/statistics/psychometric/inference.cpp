@@ -158,6 +158,14 @@ double log_sum_of(const std::vector<double>& logarithms) {
   return most + std::log(sum);
 }
 
+Eigen::ArrayXd etas_of(const GridAxis& axis) {
+  Eigen::ArrayXd etas{static_cast<Eigen::Index>(axis.cells)};
+  for (Eigen::Index i = 0; i < etas.size(); ++i) {
+    etas[i] = axis.centre(static_cast<std::size_t>(i));
+  }
+  return etas;
+}
+
 class Grid {
  public:
   Grid(const PosteriorAxes& axes, const PsychometricModel& model, const std::vector<Level>& levels,
@@ -166,7 +174,9 @@ class Grid {
         model_{model},
         levels_{levels},
         range_{axis_range(levels, model.shape)},
-        breadth_{breadth} {}
+        breadth_{breadth},
+        likelihood_{levels, etas_of(axes[eta_at])},
+        p_(levels.size()) {}
 
   Marginals marginals() {
     add_all();
@@ -210,15 +220,15 @@ class Grid {
   void add_dispersions(double guess, double lapse, double log_prior,
                        const std::vector<double>& shape_values) {
     const double log_prior_of_rates = log_prior_of_rate(guess) + log_prior_of_rate(lapse);
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      p_[i] = guess + (1.0 - guess - lapse) * shape_values[i];
+    }
+    const Eigen::ArrayXd& log_likelihoods = likelihood_.log_likelihoods(p_);
     for (std::size_t e = 0; e < axes_[eta_at].cells; ++e) {
-      const double eta = axes_[eta_at].centre(e);
-      double log_density = log_prior + log_prior_of_rates + log_prior_of_rate(eta);
+      const double log_density =
+          log_prior + log_prior_of_rates + log_prior_of_rate(axes_[eta_at].centre(e));
       log_priors_.push_back(log_density);
-      for (std::size_t i = 0; i < levels_.size(); ++i) {
-        const double p = guess + (1.0 - guess - lapse) * shape_values[i];
-        log_density += beta_binomial_log_likelihood(levels_[i].answers, p, eta);
-      }
-      log_densities_.push_back(log_density);
+      log_densities_.push_back(log_density + log_likelihoods[static_cast<Eigen::Index>(e)]);
     }
   }
 
@@ -252,6 +262,8 @@ class Grid {
   const std::vector<Level>& levels_;
   AxisRange range_;
   double breadth_;
+  BetaBinomialLikelihood likelihood_;
+  std::vector<double> p_;  // of each level
   std::vector<double> log_densities_;
   std::vector<double> log_priors_;
 };

@@ -9,10 +9,13 @@
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
+namespace {
+constexpr double smallest_mean = 1e-12;  // beta distributions have no mean of 0 or 1
+}  // namespace
+
 double beta_binomial_log_likelihood(const Proportion& answers, double p, double eta) {
-  constexpr double smallest_p = 1e-12;   // beta distributions have no mean of 0 or 1
   constexpr double smallest_eta = 1e-4;  // below, rounding exceeds the difference from binomial
-  const double mean = std::clamp(p, smallest_p, 1.0 - smallest_p);
+  const double mean = std::clamp(p, smallest_mean, 1.0 - smallest_mean);
   if (eta < smallest_eta) {
     return binomial_log_likelihood(answers, mean);
   }
@@ -34,6 +37,49 @@ double beta_binomial_log_likelihood(const Proportion& answers, double p, double 
   }
   return std::lgamma(k + a) - std::lgamma(a) + std::lgamma(n - k + b) - std::lgamma(b) +
          std::lgamma(nu) - std::lgamma(n + nu);
+}
+
+BetaBinomialLikelihood::BetaBinomialLikelihood(const std::vector<Level>& levels,
+                                               const Eigen::ArrayXd& etas)
+    : levels_{levels},
+      nu_{etas.square().inverse() - 1.0},
+      product_{etas.size()},
+      sum_{etas.size()} {
+  std::int64_t most = 0;
+  for (const Level& level : levels) {
+    most = std::max(most, level.answers.trials);
+  }
+  for (std::int64_t i = 0; i < most; ++i) {
+    inverse_.emplace_back((nu_ + static_cast<double>(i)).inverse());
+  }
+}
+
+// A logarithm costs as much as ten products, which are therefore taken together. No factor is above
+// 1 or below the smallest mean, so that twenty more do not underflow.
+void BetaBinomialLikelihood::multiply(double mean, std::int64_t count, std::int64_t from) {
+  constexpr std::int64_t most_factors = 20;
+  constexpr double small = 1e-60;
+  for (std::int64_t i = 0; i < count; ++i) {
+    product_ *=
+        (nu_ * mean + static_cast<double>(i)) * inverse_[static_cast<std::size_t>(from + i)];
+    if ((i + 1 == count || (i + 1) % most_factors == 0) && product_.minCoeff() < small) {
+      sum_ += product_.log();
+      product_.setOnes();
+    }
+  }
+}
+
+const Eigen::ArrayXd& BetaBinomialLikelihood::log_likelihoods(const std::vector<double>& p) {
+  sum_.setZero();
+  product_.setOnes();
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    const double mean = std::clamp(p[i], smallest_mean, 1.0 - smallest_mean);
+    const Proportion& answers = levels_[i].answers;
+    multiply(mean, answers.successes, 0);
+    multiply(1.0 - mean, answers.trials - answers.successes, answers.successes);
+  }
+  sum_ += product_.log();
+  return sum_;
 }
 
 namespace {

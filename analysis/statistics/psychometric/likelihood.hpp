@@ -81,4 +81,24 @@ double binomial_log_likelihood(const Proportion& answers, double p);
 // 2016, eq. 4 to 6): with nu = 1 / eta^2 - 1, B(k + nu p, n - k + nu (1 - p)) / B(nu p, nu (1 -
 // p)). eta in [0, 1): 0 is binomial; the variance of the proportion is eta^2 p (1 - p).
 double beta_binomial_log_likelihood(const Proportion& answers, double p, double eta);
+
+// The same of all levels together, for many p and always the same eta: what depends on eta alone is
+// computed once.
+class BetaBinomialLikelihood {
+ public:
+  // levels: not copied. etas: above 0.
+  BetaBinomialLikelihood(const std::vector<Level>& levels, const Eigen::ArrayXd& etas);
+  // p: of each level. For each eta; valid until the next call.
+  const Eigen::ArrayXd& log_likelihoods(const std::vector<double>& p);
+
+ private:
+  // Takes i from `from`, the answers of the other kind.
+  void multiply(double mean, std::int64_t count, std::int64_t from);
+
+  const std::vector<Level>& levels_;
+  Eigen::ArrayXd nu_;                    // the sum of the beta distribution's parameters
+  std::vector<Eigen::ArrayXd> inverse_;  // 1 / (nu + i), for i below the most trials of a level
+  Eigen::ArrayXd product_;               // of the factors that are not in the sum yet
+  Eigen::ArrayXd sum_;
+};
 }  // namespace tapstudy::analysis

@@ -138,6 +138,13 @@ for eta in (0.01, 0.2, 0.7):
             Approx(expected[next++]).epsilon(1e-9));
     }
   }
+  const std::vector<analysis::Level> levels{{1.0, {0, 10}}, {2.0, {7, 10}}, {3.0, {40, 40}}};
+  analysis::BetaBinomialLikelihood likelihood{levels, Eigen::Array3d{0.01, 0.2, 0.7}};
+  const Eigen::ArrayXd together = likelihood.log_likelihoods({0.3, 0.6, 0.99});
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(together[static_cast<Eigen::Index>(i)] ==
+          Approx(expected[3 * i] + expected[3 * i + 1] + expected[3 * i + 2]).epsilon(1e-9));
+  }
   CHECK(analysis::beta_binomial_log_likelihood({7, 10}, 0.6, 0.0) ==
         Approx(7.0 * std::log(0.6) + 3.0 * std::log(0.4)).epsilon(1e-12));
 }

@@ -15,133 +15,11 @@
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "results/traces/trace_codec.hpp"
-#include "runner/console/scenes.hpp"
+#include "runner/commands/check_screens.hpp"
 #include "runner/session/devices/masking_card.hpp"
-#include "runner/session/engine/between_trials.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/studies/counted.hpp"
 namespace tapstudy::runner {
-struct ScreenGroup {
-  std::string shown;  // description
-  int count{};
-  double seconds{};  // that all of them take, roughly; of trials without the tapping
-};
-// The screens that one participant sees, in this order; an upper bound if no trial is repeated.
-std::vector<ScreenGroup> screens_of(const protocols::Protocol& protocol);
-
-namespace {
-// Rough durations of screens, from experience in laboratories: not measured.
-constexpr double instructions_s = 30.0;
-constexpr double question_s = 8.0;
-constexpr double decision_s = 5.0;
-constexpr double mounting_s = 20.0;
-constexpr double confidence_s = 3.0;
-constexpr double feedback_s = 2.0;
-constexpr double rest_s = 30.0;
-constexpr double max_rest_s = 3600.0;  // that a protocol can ask for
-
-void add_instructions(const std::string& text, const std::string& whose,
-                      std::vector<ScreenGroup>& screens) {
-  if (!text.empty()) {
-    screens.push_back({"instructions of " + whose, 1, instructions_s});
-  }
-}
-
-void add_forms(const protocols::Protocol& protocol, const std::vector<std::string>& names,
-               std::vector<ScreenGroup>& screens) {
-  for (const std::string& name : names) {
-    const std::size_t items = protocol.forms.at(name).items.size();
-    screens.push_back({fmt::format("questionnaire {}: {}", name, counted(items, "question")), 1,
-                       question_s * static_cast<double>(items)});
-  }
-}
-
-// Trials and what comes after each.
-std::vector<ScreenGroup> trial_screens(const protocols::Block& block) {
-  const int trials = protocols::planned_trials(block);
-  const bool is_mounted = block.presented == protocols::Presented::real_plates;
-  std::vector<ScreenGroup> screens{
-      {fmt::format("{}: {}{}", block.name, may_end_early(block) ? "at most " : "",
-                   counted(static_cast<std::size_t>(trials), "trial")),
-       trials, trials * (decision_s + (is_mounted ? mounting_s : 0.0))}};
-  if (block.confidence) {
-    screens.push_back({fmt::format("confidence in {} steps, after each", block.confidence->steps),
-                       trials, trials * confidence_s});
-  }
-  if (block.gives_feedback) {
-    screens.push_back({"feedback, after each", trials, trials * feedback_s});
-  }
-  return screens;
-}
-
-// The number of breaks in a block of this duration without them; none follows the last trial.
-int number_of(const protocols::Breaks& breaks, int trials, double block_s) {
-  int number = breaks.every_trials ? (trials - 1) / *breaks.every_trials : 0;
-  if (breaks.every_seconds) {
-    number = std::max(number, static_cast<int>(block_s / *breaks.every_seconds));
-  }
-  return std::min(number, trials - 1);
-}
-
-std::string length_of(const protocols::Breaks& breaks) {
-  if (!breaks.max_seconds) {
-    return breaks.min_seconds > 0.0 ? fmt::format(" of at least {} s", breaks.min_seconds) : "";
-  }
-  if (breaks.min_seconds == *breaks.max_seconds) {
-    return fmt::format(" of {} s", breaks.min_seconds);
-  }
-  return breaks.min_seconds > 0.0
-             ? fmt::format(" of {} to {} s", breaks.min_seconds, *breaks.max_seconds)
-             : fmt::format(" of at most {} s", *breaks.max_seconds);
-}
-
-std::string described(const protocols::Breaks& breaks) {
-  std::vector<std::string> after;
-  if (breaks.every_trials) {
-    after.push_back(counted(static_cast<std::size_t>(*breaks.every_trials), "trial"));
-  }
-  if (breaks.every_seconds) {
-    after.push_back(fmt::format("{} s", *breaks.every_seconds));
-  }
-  return fmt::format("a break{}, after every {}", length_of(breaks), fmt::join(after, " or "));
-}
-
-void add_trials(const protocols::Protocol& protocol, const protocols::Block& block,
-                std::vector<ScreenGroup>& screens) {
-  const std::vector<ScreenGroup> own = trial_screens(block);
-  screens.insert(screens.end(), own.begin(), own.end());
-  if (block.breaks) {
-    const int trials = protocols::planned_trials(block);
-    double block_s = trials * simulated_trial_s(protocol, block);
-    for (const ScreenGroup& group : own) {
-      block_s += group.seconds;
-    }
-    const int count = number_of(*block.breaks, trials, block_s);
-    const double each_s = std::clamp(rest_s, block.breaks->min_seconds,
-                                     block.breaks->max_seconds.value_or(max_rest_s));
-    screens.push_back({described(*block.breaks), count, count * each_s});
-  }
-}
-}  // namespace
-
-std::vector<ScreenGroup> screens_of(const protocols::Protocol& protocol) {
-  std::vector<ScreenGroup> screens;
-  add_instructions(protocol.instructions, "the study", screens);
-  add_forms(protocol, protocol.forms_before, screens);
-  const protocols::Block* before = nullptr;
-  for (const protocols::Block& block : protocol.blocks) {
-    add_instructions(block.instructions, block.name, screens);
-    if (before != nullptr && is_end_of_practice_said(*before, block)) {
-      screens.push_back({"the practice is over", 1, feedback_s});
-    }
-    before = &block;
-    add_trials(protocol, block, screens);
-    add_forms(protocol, block.forms_after, screens);
-  }
-  add_forms(protocol, protocol.forms_after, screens);
-  return screens;
-}
-
 namespace {
 constexpr double alpha = 0.05;
 
@@ -192,8 +70,10 @@ void print_power(const protocols::Protocol& protocol, const protocols::Block& bl
   const int answers = participants * block.task->counted_answers(block);
   const int critical = analysis::critical_successes(answers, chance, alpha);
   fmt::print(
-      "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided exact binomial test of "
-      "all answers; a test over participants needs more where they are few or differ)\n",
+      "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, as if all answers "
+      "were independent: the report draws the order again, and needs more where people have "
+      "habits, "
+      "are few or differ)\n",
       100.0 * chance, answers, critical, block.task->success());
   fmt::print("    power of that test if the truth is");
   for (const double above : {0.1, 0.2, 0.3}) {
@@ -280,14 +160,14 @@ long minutes(double seconds) {
 }
 
 // "material: identification, 4 stimuli, 8 trials a participant"
-std::string heading(const protocols::Block& block, int trials) {
-  return fmt::format(
-      "{}{}{}: {}, {}, {}{} a participant", block.name, block.is_practice ? " (practice)" : "",
-      block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
-      block.task->name(),
-      block.stimuli.size() == 1 ? block.stimuli.front()
-                                : fmt::format("{} stimuli", block.stimuli.size()),
-      may_end_early(block) ? "at most " : "", counted(static_cast<std::size_t>(trials), "trial"));
+std::string heading(const protocols::Block& block, const BlockLength& length) {
+  return fmt::format("{}{}{}: {}, {}, {} a participant", block.name,
+                     block.is_practice ? " (practice)" : "",
+                     block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
+                     block.task->name(),
+                     block.stimuli.size() == 1 ? block.stimuli.front()
+                                               : fmt::format("{} stimuli", block.stimuli.size()),
+                     describe_length(block, length));
 }
 
 using BlockOrderDealt = std::vector<std::size_t>;  // places in the protocol's list
@@ -373,16 +253,17 @@ void warn_of_block_order(const protocols::Protocol& protocol, int participants) 
   }
 }
 
-void print_blocks(const protocols::Protocol& protocol, int participants) {
+void print_blocks(const protocols::Protocol& protocol, const BlockLengths& lengths,
+                  int participants) {
   fmt::print("{}\n\n", protocol.title);
   double total_s = 0.0;
   double recorded_s = 0.0;
   for (const protocols::Block& block : protocol.blocks) {
-    const int trials = planned_trials(block);
-    const double seconds = trials * simulated_trial_s(protocol, block);
+    const BlockLength& length = lengths.at(block.name);
+    const double seconds = length.usual * simulated_trial_s(protocol, block);
     total_s += seconds;
     recorded_s += block.presented == protocols::Presented::real_plates ? 0.0 : seconds;
-    fmt::print("  {}, about {:.0f} s of tapping\n", heading(block, trials), seconds);
+    fmt::print("  {}, about {:.0f} s of tapping\n", heading(block, length), seconds);
     if (block.is_practice) {
       continue;  // in no result
     }
@@ -397,52 +278,12 @@ void print_blocks(const protocols::Protocol& protocol, int participants) {
       warn_of_unequal_answers(block);
     }
   }
-  double screens_s = 0.0;
-  for (const ScreenGroup& group : screens_of(protocol)) {
-    screens_s += group.seconds;
-  }
+  const double screens_s = seconds_of_screens(protocol, lengths);
   fmt::print("\n  {} participants, about {} min each: {} of tapping, {} for the screens below\n",
              participants, minutes(total_s) + minutes(screens_s), minutes(total_s),
              minutes(screens_s));
   fmt::print("  about {:.0f} MB of disk for all, if they tap no longer than simulated ones\n",
              1e-6 * results::usual_bytes_per_tick * recorded_s * protocol.rate_hz * participants);
-}
-
-void warn_of_unasked_forms(const protocols::Protocol& protocol) {
-  std::set<std::string> asked{protocol.forms_before.begin(), protocol.forms_before.end()};
-  asked.insert(protocol.forms_after.begin(), protocol.forms_after.end());
-  for (const protocols::Block& block : protocol.blocks) {
-    asked.insert(block.forms_after.begin(), block.forms_after.end());
-  }
-  for (const auto& [name, form] : protocol.forms) {
-    if (!asked.contains(name)) {
-      fmt::print("  warning: forms.{} is never asked (forms_before, forms_after)\n", name);
-    }
-  }
-}
-
-// The picture would tell which plate it is.
-void note_hidden_plates(const protocols::Protocol& protocol) {
-  const Scenes scenes{protocol, protocol.placement};
-  for (const protocols::Block& block : protocol.blocks) {
-    if (protocol.display.shows_plate && block.presented == protocols::Presented::virtual_plates &&
-        !scenes.number_of(block.stimuli.front(), block)) {
-      fmt::print("  note: the page shows no plate in block {}: its plates look different\n",
-                 block.name);
-    }
-  }
-}
-
-void print_screens(const protocols::Protocol& protocol) {
-  fmt::print("\nscreens of a participant\n");
-  int total = 0;
-  for (const ScreenGroup& screen : screens_of(protocol)) {
-    fmt::print("  {:>4}  {}\n", screen.count, screen.shown);
-    total += screen.count;
-  }
-  fmt::print("  {:>4}  in all, if no trial is repeated\n", total);
-  warn_of_unasked_forms(protocol);
-  note_hidden_plates(protocol);
 }
 
 void print_languages(const protocols::Protocol& protocol) {
@@ -469,13 +310,14 @@ void print_design(const protocols::Protocol& protocol, int participants) {
     fmt::print("{}\n\n  no blocks, so no session: for tap, modes and trade\n", protocol.title);
     return;
   }
-  print_blocks(protocol, participants);
+  const BlockLengths lengths = lengths_of(protocol);
+  print_blocks(protocol, lengths, participants);
   warn_of_block_order(protocol, participants);
   if (protocol.masking) {
     fmt::print("\nmasking\n  {} in every trial; {}\n", described(*protocol.masking),
                protocol.masking->is_required ? "required" : "a session without a card is warned");
   }
-  print_screens(protocol);
+  print_screens(protocol, lengths);
   print_languages(protocol);
 }
 }  // namespace tapstudy::runner

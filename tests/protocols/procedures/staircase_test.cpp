@@ -1,10 +1,12 @@
 // Up-down staircases: where they settle, how they move.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "protocols/procedures/procedure.hpp"
+#include "protocols/procedures/simulated_length.hpp"
 #include "support/catch.hpp"
 #include "support/procedures.hpp"
 using namespace tapstudy;
@@ -224,4 +226,46 @@ TEST_CASE("a staircase steps from what it requested, not from what could be buil
     rounded->observe({std::round(value)}, answer);
     CHECK(rounded->next() == exact->next());
   }
+}
+
+namespace {
+std::string until(int reversals) {
+  return fmt::format(
+      "staircase: {{rule: transformed, n_down: 2, steps: db, start: 1, min: 0.01, max: 1, "
+      "first_step: 4, min_step: 1, stop: {{reversals: {}, trials: 1000}}, estimate_reversals: 2}}",
+      reversals);
+}
+}  // namespace
+
+TEST_CASE("the usual length of a staircase is the median over people with thresholds at any level",
+          "[protocols][procedures][check]") {
+  const auto settings = testing::procedure_of(until(8));
+  std::vector<double> trials;
+  for (std::uint64_t person = 0; person < 400; ++person) {
+    // the unit is one of log10, of which there are two from limit to limit
+    const double threshold = -2.0 + 2.0 * (static_cast<double>(person) + 0.5) / 400.0;
+    testing::KnownObserver observer{
+        {core::PsychometricShape::cumulative_gaussian, threshold, 4.0, 0.5, 0.02}, 1000 + person};
+    const auto track = settings->start(person);
+    testing::run(*track, [&](const std::vector<double>& values) {
+      return observer.answer(std::log10(values[0]));
+    });
+    trials.push_back(static_cast<double>(track->trials()));
+  }
+  std::ranges::sort(trials);
+  const protocols::TrackLength length = protocols::simulated_length(*settings, 0.5);
+  CHECK(static_cast<double>(length.usual) == Approx(trials[200]).epsilon(0.2));
+  CHECK(static_cast<double>(length.most) == Approx(trials[380]).epsilon(0.25));
+}
+
+TEST_CASE("reversals make a staircase long, its limit of trials makes it end",
+          "[protocols][procedures][check]") {
+  const auto length = [](const std::string& yaml) {
+    return protocols::simulated_length(*testing::procedure_of(yaml), 0.5);
+  };
+  const auto once = static_cast<double>(length(until(10)).usual);
+  CHECK(static_cast<double>(length(until(40)).usual) == Approx(4.0 * once).epsilon(0.25));
+  const auto whole = length(small_steps("rule: transformed, n_down: 2"));
+  CHECK(whole.usual == 1000);
+  CHECK(whole.most == 1000);
 }

@@ -169,7 +169,7 @@ std::optional<ReportSection> block_contrasts(
     return std::nullopt;
   }
   ReportSection section{"Blocks compared", {differences, ratios}};
-  section.name = "contrasts";
+  section.name = study_sections::contrasts;
   section.remarks.emplace_back(core::citing(
       "Of participants with a value in both blocks, or one that is known to lie beyond the levels "
       "presented (\"6 of 8\": of two nothing is known); ratios are geometric means. Two-sided "

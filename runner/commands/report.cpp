@@ -66,7 +66,8 @@ results::Store store_to_report(const std::string& directory) {
 }
 
 Summary summary_of_directories(const ReportOptions& options,
-                               const std::vector<std::string>& directories) {
+                               const std::vector<std::string>& directories,
+                               const std::vector<std::string>& only) {
   std::vector<results::Store> stores;
   std::vector<results::SessionRow> sessions;
   for (const std::string& directory : directories) {
@@ -78,7 +79,7 @@ Summary summary_of_directories(const ReportOptions& options,
   for (std::size_t i = 0; i < stores.size(); ++i) {
     studies.push_back({directories[i], &stores[i]});
   }
-  return summary_of_study(studies, mode_to_report(options, sessions));
+  return summary_of_study(studies, mode_to_report(options, sessions), Detail::all, only);
 }
 
 // Splits the text as a row of a table: a comma within an answer is in quotes.
@@ -150,7 +151,7 @@ TableOptions table_options(const ReportOptions& options) {
 // A study's directory, or a table.
 Summary summary_of_either(const ReportOptions& options, const std::string& path) {
   std::error_code error;
-  return fs::is_directory(path, error) ? summary_of_directories(options, {path})
+  return fs::is_directory(path, error) ? summary_of_directories(options, {path}, {})
                                        : summary_of_tables({path}, table_options(options));
 }
 
@@ -164,11 +165,17 @@ Summary summary_of_comparison(const ReportOptions& options) {
 }
 
 Summary summary_of(const ReportOptions& options) {
-  if (!options.compared.empty()) {
-    return summary_of_comparison(options);
+  const std::vector<std::string> only = split_row(options.only, "--only");
+  if (!options.directories.empty()) {
+    return summary_of_directories(options, options.directories, only);
   }
-  return options.counts.empty() ? summary_of_directories(options, options.directories)
-                                : summary_of_tables(options.counts, table_options(options));
+  Summary summary = options.compared.empty()
+                        ? summary_of_tables(options.counts, table_options(options))
+                        : summary_of_comparison(options);
+  if (!only.empty()) {
+    analysis::keep_only(summary, only);
+  }
+  return summary;
 }
 
 void check_options(const ReportOptions& options) {
@@ -195,10 +202,7 @@ void run_report(ReportOptions options) {
     options.out = (fs::path{options.directories.front()} / report_folder).string();
   }
   check_output_is_new(options);
-  Summary summary = summary_of(options);
-  if (!options.only.empty()) {
-    analysis::keep_only(summary, split_row(options.only, "--only"));
-  }
+  const Summary summary = summary_of(options);
   analysis::write_text(std::cout, summary);
   std::cout << std::endl;
   if (!options.out.empty()) {

@@ -267,17 +267,53 @@ analysis::ReportSection confidence(const protocols::Protocol& protocol,
   }
   return analysis::confidence_section(scales, answers);
 }
-}  // namespace
+// Which parts of a report are asked for. A name that is neither a block's nor a section's may be
+// that of a block's part, which is known only once all are computed.
+class Wanted {
+ public:
+  Wanted(const std::vector<std::string>& only, const protocols::Protocol& protocol) : only_{only} {
+    const auto is_known = [&](const std::string& name) {
+      return std::ranges::find(analysis::study_sections::all, name) !=
+                 analysis::study_sections::all.end() ||
+             std::ranges::find(protocol.blocks, name, &protocols::Block::name) !=
+                 protocol.blocks.end();
+    };
+    is_all_ = only.empty() || !std::ranges::all_of(only, is_known);
+  }
+  bool has(std::string_view name) const {
+    return is_all_ || std::ranges::find(only_, name) != only_.end();
+  }
 
-std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& protocol,
-                                                    const std::vector<StudyStore>& stores,
-                                                    results::Mode mode, const DoneBlocks& done) {
-  return {
-      course(protocol, stores, mode), confidence(protocol, stores, mode),
-      analysis::procedures_section(track_results(protocol, stores, mode)),
-      analysis::questionnaires_section(questionnaires_of(protocol), given_answers(stores, mode)),
-      analysis::rendered_section(rendered_study(protocol, stores, mode, done))};
+ private:
+  const std::vector<std::string>& only_;
+  bool is_all_{};
+};
+
+// The sections of a report besides the results of its blocks.
+std::vector<analysis::ReportSection> sections_of(const protocols::Protocol& protocol,
+                                                 const std::vector<StudyStore>& stores,
+                                                 results::Mode mode, const DoneBlocks& done,
+                                                 const Wanted& wanted) {
+  namespace names = analysis::study_sections;
+  std::vector<analysis::ReportSection> sections;
+  const auto add = [&](std::string_view name, const auto& compute) {
+    if (wanted.has(name)) {
+      sections.push_back(compute());
+    }
+  };
+  add(names::sessions, [&] { return course(protocol, stores, mode); });
+  add(names::confidence, [&] { return confidence(protocol, stores, mode); });
+  add(names::procedures,
+      [&] { return analysis::procedures_section(track_results(protocol, stores, mode)); });
+  add(names::questionnaires, [&] {
+    return analysis::questionnaires_section(questionnaires_of(protocol),
+                                            given_answers(stores, mode));
+  });
+  add(names::rendered,
+      [&] { return analysis::rendered_section(rendered_study(protocol, stores, mode, done)); });
+  return sections;
 }
+}  // namespace
 
 namespace {
 using analysis::Summary;
@@ -384,7 +420,21 @@ std::vector<std::string> rendered_by_earlier_versions(
       100.0 * in_series / (contact + in_series))};
 }
 
-Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detail detail) {
+namespace {
+// Hypotheses are adjusted for the number of all of them, so that theirs are always computed, and
+// contrasts are of all blocks. A block without answers is one that the report tells of.
+void leave_out_unwanted(const Wanted& wanted, const std::vector<results::AnswerRow>& answers,
+                        analysis::StudyDesign& design) {
+  std::erase_if(design.blocks, [&](const analysis::BlockDesign& block) {
+    return !wanted.has(block.name) && !wanted.has(analysis::study_sections::contrasts) &&
+           block.hypotheses.empty() &&
+           std::ranges::find(answers, block.name, &results::AnswerRow::block) != answers.end();
+  });
+}
+}  // namespace
+
+Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detail detail,
+                         const std::vector<std::string>& only) {
   check_same_protocol(stores);
   check_different_participants(stores);
   const results::StudyRow study = stores.front().store->study();
@@ -408,12 +458,16 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     }
     return analysis::summarise(design, all.answers, all.visits, all.presentations);
   }
+  const Wanted wanted{only, protocol};
+  leave_out_unwanted(wanted, all.answers, design);
   Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
   const DoneBlocks done = done_blocks(stores, mode);
-  summary.sections = study_sections(protocol, stores, mode, done);
-  const bool is_order_fixed = protocol.block_order.order == protocols::Order::listed;
-  if (auto contrasts = analysis::block_contrasts(summary.blocks, is_order_fixed)) {
-    summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
+  summary.sections = sections_of(protocol, stores, mode, done, wanted);
+  if (wanted.has(analysis::study_sections::contrasts)) {
+    const bool is_order_fixed = protocol.block_order.order == protocols::Order::listed;
+    if (auto contrasts = analysis::block_contrasts(summary.blocks, is_order_fixed)) {
+      summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
+    }
   }
   summary.provenance = provenance(study, all.sessions);
   summary.procedure = describe_procedure(protocol, all.sessions, summary.participant_ids, done);
@@ -422,6 +476,9 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   std::ranges::move(all.deviations, std::back_inserter(summary.deviations));
   std::ranges::move(rendered_by_earlier_versions(protocol, all.sessions),
                     std::back_inserter(summary.deviations));
+  if (!only.empty()) {
+    analysis::keep_only(summary, only);
+  }
   return summary;
 }
 }  // namespace tapstudy::runner

@@ -16,18 +16,16 @@ inline constexpr const char* report_folder = "report";
 // The part of a protocol that a report of these participants needs.
 analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mode mode);
 
-// The sections of a report besides the results of its blocks, for the participants of one mode.
-std::vector<analysis::ReportSection> study_sections(const protocols::Protocol& protocol,
-                                                    const std::vector<StudyStore>& stores,
-                                                    results::Mode mode, const DoneBlocks& done);
-
 enum class Detail { all, main_results };  // of a report, or of a simulated design
 
 // The results of a study for its participants of one mode; those who were excluded, practice and
-// catch trials are named, and left out of the results. Throws InvalidInput if there is no answer,
-// two stores are of different protocols, or a participant is in two of them.
+// catch trials are named, and left out of the results. only: the names of blocks and sections that
+// are asked for (empty: all); what neither they nor declared hypotheses need is not computed.
+// Throws InvalidInput if there is no answer, two stores are of different protocols, a participant
+// is in two of them, or a name is none.
 analysis::Summary summary_of_study(const std::vector<StudyStore>& stores, results::Mode mode,
-                                   Detail detail = Detail::all);
+                                   Detail detail = Detail::all,
+                                   const std::vector<std::string>& only = {});
 
 // What a study's sessions rendered otherwise than this version would, because an earlier one ran
 // them: sentences, which the report has among its deviations. Versions that are not of the form

@@ -1,9 +1,11 @@
 #pragma once
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <ostream>
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/report/document/cells.hpp"
@@ -20,6 +22,18 @@ struct ReportSection {
   std::string name{};                  // by which it is asked for, where it is of a whole study
   std::vector<std::string> terminal_lines{};  // results in words; in text only
 };
+
+// The sections of a whole study.
+namespace study_sections {
+inline constexpr std::string_view contrasts = "contrasts";
+inline constexpr std::string_view sessions = "sessions";
+inline constexpr std::string_view confidence = "confidence";
+inline constexpr std::string_view procedures = "procedures";
+inline constexpr std::string_view questionnaires = "questionnaires";
+inline constexpr std::string_view rendered = "rendered";
+inline constexpr std::array all{contrasts,  sessions,       confidence,
+                                procedures, questionnaires, rendered};
+}  // namespace study_sections
 
 // The same without its title.
 void write_contents_text(std::ostream& out, const ReportSection& section);

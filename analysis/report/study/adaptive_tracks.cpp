@@ -109,7 +109,7 @@ ReportTable posteriors_table(const std::vector<TrackResult>& tracks) {
 ReportSection procedures_section(const std::vector<TrackResult>& tracks) {
   ReportSection section{"What the procedures estimated",
                         {means_table(tracks), tracks_table(tracks), posteriors_table(tracks)}};
-  section.name = "procedures";
+  section.name = study_sections::procedures;
   if (!tracks.empty()) {
     section.remarks = {
         "As the procedures chose the levels, computed again from the answers as first given. A "

@@ -63,7 +63,7 @@ ReportSection confidence_section(const std::vector<ConfidenceScale>& scales,
   }
   ReportSection section{"Confidence"};
   if (!table.rows.empty()) {
-    section.name = "confidence";
+    section.name = study_sections::confidence;
     section.tables.push_back(std::move(table));
     section.remarks.emplace_back(
         "Of the answers that count, with the confidence given with them. Descriptive: whoever is "

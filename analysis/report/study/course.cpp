@@ -154,7 +154,7 @@ ReportTable masking_table(const Courses& participants) {
 ReportSection course_section(const Courses& participants,
                              const std::vector<PracticeResult>& practice, bool has_masking) {
   ReportSection section{"How the sessions went"};
-  section.name = "sessions";
+  section.name = study_sections::sessions;
   section.is_detail = true;
   section.tables = {course_table(participants),    exclusions_table(participants),
                     attention_table(participants), practice_table(practice),

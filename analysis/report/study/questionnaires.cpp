@@ -209,7 +209,7 @@ std::vector<ReportTable> empty_tables() {
 ReportSection questionnaires_section(const std::vector<Questionnaire>& forms,
                                      const std::vector<GivenAnswer>& answers) {
   ReportSection section{"Questionnaires", empty_tables()};
-  section.name = "questionnaires";
+  section.name = study_sections::questionnaires;
   if (answers.empty()) {
     if (!forms.empty()) {
       section.remarks.emplace_back("No answers to questionnaires are stored of these sessions.");

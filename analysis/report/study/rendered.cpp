@@ -269,7 +269,7 @@ void say_what_is_missing(const RenderedStudy& study, ReportSection& section) {
 
 ReportSection rendered_section(const RenderedStudy& study) {
   ReportSection section{"What was rendered"};
-  section.name = "rendered";
+  section.name = study_sections::rendered;
   section.is_detail = true;
   section.tables = {stimuli_table(study), models_table(study), modes_table(study)};
   if (study.traced_trials > 0) {

@@ -197,6 +197,26 @@ TEST_CASE("a part that a report does not have is refused with those that it has"
                        !Contains("What was rendered"));
 }
 
+TEST_CASE("a part of a report has the numbers that it has in the whole one",
+          "[end_to_end][rendered]") {
+  const testing::TempDirectory directory;
+  const std::string study =
+      simulated(directory, "examples/techniques_compared.yaml", {"--no-traces"});
+  const auto blocks = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> words{"report", study, "--replace"};
+    words.insert(words.end(), options.begin(), options.end());
+    REQUIRE(testing::tapstudy(words).exit_code == 0);
+    return nlohmann::json::parse(testing::contents(study + "/report/report.json")).at("blocks");
+  };
+  const nlohmann::json all = blocks({});
+  for (const nlohmann::json& block : all) {
+    const nlohmann::json only = blocks({"--only", block.at("block").get<std::string>()});
+    REQUIRE(only.size() == 1);
+    // that of the hypothesis, too, which is adjusted for those of other blocks
+    CHECK(only.front() == block);
+  }
+}
+
 TEST_CASE("switches and biases in a report are those of the stored events",
           "[end_to_end][choice]") {
   const testing::TempDirectory directory;

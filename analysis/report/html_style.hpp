@@ -23,19 +23,20 @@ figure{margin:0}figcaption{font-size:.85rem;color:#567}.chart{width:100%;height:
 .chart .interval{stroke:#08519c;stroke-width:3}.chart circle{fill:#08519c;stroke:#08519c;fill-opacity:.8}.chart circle.open{fill:#fff;fill-opacity:1}
 .chart .band{fill:#c6dbef}.chart .mark{stroke:#b0413e}.charts .first{grid-column-start:1}details>summary{cursor:pointer;margin-top:1rem}
 .contents ul{display:flex;flex-wrap:wrap;gap:.2rem 1.2rem;padding:0;list-style:none}.contents a{color:#08519c}
-section>h3{font-size:1.1rem;border-top:1px solid #cdd6df;padding-top:.6rem}section .data~h3,section>h3~h3{font-size:1rem;border:0;padding:0}
+.section>summary,section>h3{border-top:1px solid #cdd6df;padding-top:.6rem}.section>summary{margin-top:.6rem}.section>summary h3{display:inline;font-size:1.1rem}
+section>h3{font-size:1.1rem}section .data~h3,section>h3~h3{font-size:1rem;border:0;padding:0}
 .note,.provenance{font-size:.85rem;color:#567}.provenance th{text-align:left;font-weight:500;padding-right:1rem;vertical-align:top}
 .provenance td{word-break:break-all}.notes{white-space:pre-line}
 @media (max-width:600px){.accuracy td{white-space:normal;padding-right:.5rem}.accuracy th{padding-right:.5rem;overflow-wrap:anywhere}.accuracy th[scope=row]{min-width:5.5rem}.accuracy thead th{overflow-wrap:normal}
   .dot{width:72px}.data thead{display:none}.data,.data tbody,.data tr,.data tbody th,.data td{display:block}.data tbody th,.data td,.data td.text{white-space:normal;max-width:none;padding:.1rem 0;overflow-wrap:anywhere}
   .data tbody th{font-weight:500;text-align:left;margin-top:.5rem}.data td{display:flex;justify-content:space-between;gap:1rem}.data td::before{content:attr(data-heading);color:#567;text-align:left}
-  .matrix td{width:auto;min-width:2.4rem;height:2.6rem}.matrix td b{font-size:1rem}.matrix td span{font-size:.7rem}.matrix th{padding:.2rem;font-size:.75rem;overflow-wrap:anywhere}h1{font-size:1.3rem}}
+  .matrix td{width:auto;min-width:2.4rem;height:2.6rem}.matrix td b{font-size:1rem}.matrix td span{font-size:.7rem}.matrix th{padding:.2rem .1rem;font-size:.65rem;overflow-wrap:anywhere}.matrix .total{width:auto}h1{font-size:1.3rem}}
 @media screen and (prefers-color-scheme:dark){:root{color-scheme:dark}body{background:#14191f;color:#dde5ec}
   .simulated{background:#4a3a08;border-color:#d39e00}caption,figcaption,.matrix .total,.note,.provenance,.data td::before{color:#9fb0bf}
-  .matrix td{border-color:#14191f}.matrix td.correct{outline-color:#dde5ec}.contents a{color:#8ab8e6}section>h3{border-color:#3a4754}
+  .matrix td{border-color:#14191f}.matrix td.correct{outline-color:#dde5ec}.contents a{color:#8ab8e6}.section>summary,section>h3{border-color:#3a4754}
   .dot .axis{stroke:#3a4754}.dot .chance,.chart .chance,.chart .mark{stroke:#ef8a80}.dot .interval,.chart .interval{stroke:#6baed6}.dot circle{fill:#6baed6}
   .chart .line{stroke:#b9c9d6}.chart .band{fill:#274a68}.chart circle{fill:#6baed6;stroke:#6baed6}.chart circle.open{fill:#14191f}}
-@media print{body{margin:0;max-width:none;font-size:11pt}.scroll{overflow:visible;left:0;transform:none;width:auto;max-width:none}
+@media print{details::details-content{content-visibility:visible;height:auto}body{margin:0;max-width:none;font-size:11pt}.scroll{overflow:visible;left:0;transform:none;width:auto;max-width:none}
   .data{font-size:8.5pt}.data.wide{font-size:7.5pt}.data th,.data td,.accuracy td{white-space:normal;padding-right:.4rem}
   .data thead th{min-width:0;overflow-wrap:break-word}.charts{grid-template-columns:repeat(2,1fr)}figure,tr{break-inside:avoid}h2,h3,h2+p,caption,.question{break-after:avoid}table{break-inside:auto}caption{break-inside:avoid}
   .matrix td{width:auto}.matrix td,.simulated{print-color-adjust:exact;-webkit-print-color-adjust:exact}}

@@ -69,11 +69,11 @@ void write_body(std::ostream& body, const Summary& summary) {
     }
     block->write_html(body);
   }
+  core::print(body, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
   if (!summary.sections.empty()) {
     body << "<h2 id=\"study\">The study as a whole</h2>\n";
     write_sections_html(body, summary.sections, "study");
   }
-  core::print(body, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
 }
 
 void write_references(std::ostream& out, const std::vector<std::string>& cited) {

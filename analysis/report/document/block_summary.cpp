@@ -23,8 +23,8 @@ void BlockSummary::write_text(std::ostream& out) const {
 }
 
 void BlockSummary::write_html(std::ostream& out) const {
-  write_contents_html(out, results());
   write_hypotheses_html(out, hypotheses);
+  write_contents_html(out, results());
   write_sections_html(out, std::span{sections}.subspan(1), block.empty() ? "counts" : block);
 }
 

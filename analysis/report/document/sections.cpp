@@ -77,26 +77,19 @@ void write_sections_text(std::ostream& out, std::span<const ReportSection> secti
   }
 }
 
+// The headings of folded sections are their list of contents.
 void write_sections_html(std::ostream& out, std::span<const ReportSection> sections,
                          const std::string& anchor) {
-  const auto id_of = [&](std::size_t i) { return fmt::format("{}-{}", anchor, i + 1); };
-  const bool is_long = std::ranges::count_if(sections, has_content) > 1;
-  if (is_long) {
-    core::print(out, "<nav class=contents aria-label=\"Contents of {}\"><ul>\n", escaped(anchor));
-  }
-  for (std::size_t i = 0; i < sections.size(); ++i) {
-    if (is_long && has_content(sections[i])) {
-      core::print(out, "<li><a href=\"#{}\">{}</a></li>\n", escaped(id_of(i)),
-                  escaped(sections[i].title));
-    }
-  }
-  out << (is_long ? "</ul></nav>\n" : "");
+  const bool are_folded = std::ranges::count_if(sections, has_content) > 1;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     if (has_content(sections[i])) {
-      core::print(out, "<section id=\"{}\"><h3>{}</h3>\n", escaped(id_of(i)),
-                  escaped(sections[i].title));
+      const std::string id = fmt::format("{}-{}", anchor, i + 1);
+      core::print(out,
+                  are_folded ? "<details class=section id=\"{}\"><summary><h3>{}</h3></summary>\n"
+                             : "<section id=\"{}\"><h3>{}</h3>\n",
+                  escaped(id), escaped(sections[i].title));
       write_contents_html(out, sections[i]);
-      out << "</section>\n";
+      out << (are_folded ? "</details>\n" : "</section>\n");
     }
   }
 }

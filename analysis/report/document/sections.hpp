@@ -40,8 +40,8 @@ void write_contents_text(std::ostream& out, const ReportSection& section);
 void write_contents_html(std::ostream& out, const ReportSection& section);
 // Titles, tables and remarks; figures are left out.
 void write_sections_text(std::ostream& out, std::span<const ReportSection> sections);
-// A list of contents with links where there are several, then the sections. `anchor`: of the block,
-// unlike that of others.
+// Each under its heading, folded where there are several. `anchor`: of the block, unlike that of
+// others.
 void write_sections_html(std::ostream& out, std::span<const ReportSection> sections,
                          const std::string& anchor);
 // Every table under its name, and "remarks".

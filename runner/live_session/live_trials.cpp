@@ -162,8 +162,8 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
     if (console_) {
       console_->watch(sample);
     }
-    parts_.markers.send(
-        ForceSample{sample.force_n, std::chrono::nanoseconds{at.time_since_epoch()}.count()});
+    parts_.markers.send_force(
+        {sample.force_n, std::chrono::nanoseconds{at.time_since_epoch()}.count()});
     tap_markers_.add(sample, std::chrono::duration<double>(at - begun_).count(), trial_);
   });
 }

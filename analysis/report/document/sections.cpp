@@ -83,11 +83,10 @@ void write_sections_html(std::ostream& out, std::span<const ReportSection> secti
   const bool are_folded = std::ranges::count_if(sections, has_content) > 1;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     if (has_content(sections[i])) {
-      const std::string id = fmt::format("{}-{}", anchor, i + 1);
-      core::print(out,
-                  are_folded ? "<details class=section id=\"{}\"><summary><h3>{}</h3></summary>\n"
-                             : "<section id=\"{}\"><h3>{}</h3>\n",
-                  escaped(id), escaped(sections[i].title));
+      const std::string heading = fmt::format("<h3>{}</h3>", escaped(sections[i].title));
+      core::print(out, "<{} id=\"{}-{}\">{}\n", are_folded ? "details class=section" : "section",
+                  escaped(anchor), i + 1,
+                  are_folded ? "<summary>" + heading + "</summary>" : heading);
       write_contents_html(out, sections[i]);
       out << (are_folded ? "</details>\n" : "</section>\n");
     }

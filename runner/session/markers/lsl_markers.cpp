@@ -134,7 +134,7 @@ class LslMarkers final : public MarkerOutput {
     return lsl_.push_strings(markers_.get(), &value, at_s(marker.monotonic_ns), 1) == 0 ? Sent::yes
                                                                                         : Sent::no;
   }
-  void send(const ForceSample& sample) override {
+  void send_force(const ForceSample& sample) override {
     if (forces_) {
       lsl_.push_numbers(forces_->get(), sample.force_n.data(), at_s(sample.monotonic_ns), 1);
     }

@@ -29,7 +29,7 @@ class MarkerOutput {
   // Never waits: what cannot be sent now is lost.
   virtual Sent send(const Marker& marker) = 0;
   // Every tick's, where it is asked for. Likewise.
-  virtual void send(const ForceSample& /*sample*/) {}
+  virtual void send_force(const ForceSample& /*sample*/) {}
   // For messages.
   virtual std::string name() const = 0;
 };

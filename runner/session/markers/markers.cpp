@@ -46,10 +46,10 @@ void Markers::send(const Marker& marker) {
   }
 }
 
-void Markers::send(const ForceSample& sample) {
+void Markers::send_force(const ForceSample& sample) {
   const std::lock_guard lock{mutex_};
   for (Counted& counted : outputs_) {
-    counted.output->send(sample);
+    counted.output->send_force(sample);
   }
 }
 

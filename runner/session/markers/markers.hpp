@@ -29,7 +29,7 @@ class Markers {
   Markers(Markers&&) = delete;
   Markers& operator=(Markers&&) = delete;
   void send(const Marker& marker);
-  void send(const ForceSample& sample);
+  void send_force(const ForceSample& sample);
   std::int64_t lost() const;
 
  private:

@@ -14,7 +14,7 @@
 #include "analysis/report/document/sections.hpp"
 #include "core/text/print.hpp"
 namespace tapstudy::analysis {
-void write_text(std::ostream& out, const Summary& summary) {
+void write_text(std::ostream& out, const Summary& summary, std::size_t most_lines) {
   core::print(out, "{}\n", summary.title);
   if (const std::string warning = banner(summary); !warning.empty()) {
     core::print(out, "{}\n", warning);
@@ -33,11 +33,11 @@ void write_text(std::ostream& out, const Summary& summary) {
     if (!block->block.empty()) {
       core::print(out, "{}: {}\n\n", block->block, block->question);
     }
-    block->write_text(out);
+    block->write_text(out, most_lines);
   }
   for (const ReportSection& section : summary.sections) {
     if (summary.blocks.empty() || !section.is_detail) {
-      write_sections_text(out, {&section, 1});
+      write_sections_text(out, {&section, 1}, most_lines);
     }
   }
 }

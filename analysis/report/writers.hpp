@@ -6,7 +6,8 @@
 #include "analysis/report/summary.hpp"
 namespace tapstudy::analysis {
 // Output formats. Each writes the whole summary; none computes anything.
-void write_text(std::ostream& out, const Summary& summary);   // for a terminal
+// For a terminal; most_lines: of a table.
+void write_text(std::ostream& out, const Summary& summary, std::size_t most_lines = all_lines);
 void write_html(std::ostream& out, const Summary& summary);   // self-contained, for a browser
 void write_latex(std::ostream& out, const Summary& summary);  // tables to be copied from
 void write_json(std::ostream& out, const Summary& summary);   // for programs; schema_version 1

@@ -38,6 +38,7 @@ struct ReportOptions {
   std::string mode;
   std::string only;
   bool replace{false};
+  bool shows_all{false};
 };
 
 // Real sessions by default; if there are none, the available ones, which the report states.
@@ -203,7 +204,8 @@ void run_report(ReportOptions options) {
   }
   check_output_is_new(options);
   const Summary summary = summary_of(options);
-  analysis::write_text(std::cout, summary);
+  constexpr std::size_t most_lines = 15;  // of a table
+  analysis::write_text(std::cout, summary, options.shows_all ? analysis::all_lines : most_lines);
   std::cout << std::endl;
   if (!options.out.empty()) {
     write_files(options, summary);
@@ -259,6 +261,7 @@ void add_report(CommandParser& line) {
   command.option("--only", options->only,
                  "Only these parts, comma-separated: names of blocks, contrasts, confidence, "
                  "sessions, procedures, questionnaires, rendered");
+  command.flag("--all", options->shows_all, "Print tables whole, however many rows they have");
   command.flag("--replace", options->replace, "Replace an earlier report");
   command.on_run([options] { run_report(*options); });
 }

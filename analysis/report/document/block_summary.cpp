@@ -12,12 +12,12 @@
 #include "analysis/report/document/formats.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
-void BlockSummary::write_text(std::ostream& out) const {
-  write_contents_text(out, results());
+void BlockSummary::write_text(std::ostream& out, std::size_t most_lines) const {
+  write_contents_text(out, results(), most_lines);
   write_hypotheses_text(out, hypotheses);
   for (const ReportSection& section : std::span{sections}.subspan(1)) {
     if (!section.is_detail) {
-      write_sections_text(out, {&section, 1});
+      write_sections_text(out, {&section, 1}, most_lines);
     }
   }
 }

@@ -88,7 +88,8 @@ class BlockSummary {
   explicit BlockSummary(const BlockDesign& design)
       : block{design.name}, part_of{design.part_of}, task{design.task}, question{design.question} {}
 
-  void write_text(std::ostream& out) const;  // in 100 columns, without the sections of detail
+  // In 100 columns, without the sections of detail.
+  void write_text(std::ostream& out, std::size_t most_lines = all_lines) const;
   void write_html(std::ostream& out) const;  // a part of a page
   // {"block", "task", what `values` holds, TABLE: [{key: value}], "remarks": [sentence],
   // "hypotheses"}

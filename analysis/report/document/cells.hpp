@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -60,6 +62,9 @@ struct ReportTable {
   // shows the names of stimuli and answers, which are shorter than their labels.
   bool is_matrix{};
 };
+
+// Of a table on a terminal, if it is not cut.
+inline constexpr std::size_t all_lines = std::numeric_limits<std::size_t>::max();
 
 // "0.123", with so many significant digits; "–" for NaN
 std::string rounded(double value, int significant_digits = 3);

@@ -39,7 +39,10 @@ nlohmann::ordered_json as_json(const Proportion& proportion);
 nlohmann::ordered_json as_json(const std::vector<HypothesisResult>& hypotheses);
 
 // One table in each format.
-void write_table_text(std::ostream& out, const ReportTable& table);  // in 100 columns
+// In 100 columns. Rows that would take it beyond so many lines are left out and counted, those of a
+// matrix aside.
+void write_table_text(std::ostream& out, const ReportTable& table,
+                      std::size_t most_lines = all_lines);
 // A wide table scrolls within its own frame, which the keyboard reaches.
 void write_table_html(std::ostream& out, const ReportTable& table);
 void write_framed_html(std::ostream& out, const ReportTable& table);  // without title and note

@@ -56,9 +56,9 @@ void write_contents_html(std::ostream& out, const ReportSection& section) {
   }
 }
 
-void write_contents_text(std::ostream& out, const ReportSection& section) {
+void write_contents_text(std::ostream& out, const ReportSection& section, std::size_t most_lines) {
   for (const ReportTable* const table : tables_shown(section, &ShownIn::text)) {
-    write_table_text(out, *table);
+    write_table_text(out, *table, most_lines);
   }
   for (const std::string& line : section.terminal_lines) {
     out << wrapped(line, 2);
@@ -68,11 +68,12 @@ void write_contents_text(std::ostream& out, const ReportSection& section) {
   }
 }
 
-void write_sections_text(std::ostream& out, std::span<const ReportSection> sections) {
+void write_sections_text(std::ostream& out, std::span<const ReportSection> sections,
+                         std::size_t most_lines) {
   for (const ReportSection& section : sections) {
     if (has_content(section)) {
       core::print(out, "\n{}\n\n", section.title);
-      write_contents_text(out, section);
+      write_contents_text(out, section, most_lines);
     }
   }
 }

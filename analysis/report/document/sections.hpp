@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <ostream>
 #include <set>
@@ -36,10 +37,12 @@ inline constexpr std::array all{contrasts,  sessions,       confidence,
 }  // namespace study_sections
 
 // The same without its title.
-void write_contents_text(std::ostream& out, const ReportSection& section);
+void write_contents_text(std::ostream& out, const ReportSection& section,
+                         std::size_t most_lines = all_lines);
 void write_contents_html(std::ostream& out, const ReportSection& section);
 // Titles, tables and remarks; figures are left out.
-void write_sections_text(std::ostream& out, std::span<const ReportSection> sections);
+void write_sections_text(std::ostream& out, std::span<const ReportSection> sections,
+                         std::size_t most_lines = all_lines);
 // Each under its heading, folded where there are several. `anchor`: of the block, unlike that of
 // others.
 void write_sections_html(std::ostream& out, std::span<const ReportSection> sections,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -133,17 +134,15 @@ void write_line(std::ostream& out, const std::vector<std::string>& cells,
 }
 
 // A table that is too wide: one entry below another.
-void write_entries(std::ostream& out, const Grid& grid) {
-  for (const auto& row : grid.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string entry = fmt::format("{}: {}", grid.headings[i], row[i]);
-      out << wrapped(entry, i == 0 ? 2 : 4);
-    }
+void write_entry(std::ostream& out, const std::vector<std::string>& headings,
+                 const std::vector<std::string>& row) {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    out << wrapped(fmt::format("{}: {}", headings[i], row[i]), i == 0 ? 2 : 4);
   }
 }
 }  // namespace
 
-void write_table_text(std::ostream& out, const ReportTable& table) {
+void write_table_text(std::ostream& out, const ReportTable& table, std::size_t most_lines) {
   const Grid grid = grid_of(table);
   const std::vector<std::size_t> widths = widths_of(grid);
   std::size_t total = 0;
@@ -151,13 +150,19 @@ void write_table_text(std::ostream& out, const ReportTable& table) {
     total += width + 2;
   }
   out << wrapped(table.title, 2);
-  if (total > terminal_columns && !table.is_matrix) {
-    write_entries(out, grid);
-  } else {
+  const bool is_wide = total > terminal_columns && !table.is_matrix;
+  const std::size_t lines_of_row = is_wide ? std::max<std::size_t>(1, widths.size()) : 1;
+  const std::size_t most_rows = table.is_matrix ? all_lines : most_lines / lines_of_row;
+  if (!is_wide) {
     write_line(out, grid.headings, widths);
-    for (const auto& row : grid.rows) {
-      write_line(out, row, widths);
-    }
+  }
+  const std::size_t shown = std::min(grid.rows.size(), most_rows);
+  for (const auto& row : std::span{grid.rows}.first(shown)) {
+    is_wide ? write_entry(out, grid.headings, row) : write_line(out, row, widths);
+  }
+  if (shown < grid.rows.size()) {
+    core::print(out, "  … and {} more (--all; {} in the files)\n", grid.rows.size() - shown,
+                table.name);
   }
   out << '\n';
 }

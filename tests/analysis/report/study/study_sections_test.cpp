@@ -79,6 +79,26 @@ std::vector<ReportSection> sections() {
 }
 }  // namespace
 
+TEST_CASE("a table on the terminal shows so many rows and counts the others, and whole all of them",
+          "[analysis][course]") {
+  ReportTable table{"people", "People", {{"person", {"person"}}, {"number", {"number"}}}};
+  for (int i = 0; i < 40; ++i) {
+    table.rows.push_back({word(fmt::format("P{:02}", i)), count(i)});
+  }
+  const auto lines_with_person = [&](std::size_t most_lines) {
+    std::ostringstream text;
+    write_contents_text(text, {"", {table}}, most_lines);
+    const std::string all = text.str();
+    const std::regex person{"P[0-9][0-9]"};
+    CHECK(all.find("… and 25 more (--all; people in the files)") ==
+          (most_lines == 15 ? all.rfind("  … and") + 2 : std::string::npos));
+    return std::distance(std::sregex_iterator{all.begin(), all.end(), person}, {});
+  };
+  CHECK(lines_with_person(15) == 15);
+  CHECK(lines_with_person(all_lines) == 40);
+  CHECK(lines_with_person(40) == 40);
+}
+
 TEST_CASE("the course of a session reads the same in text, HTML and JSON", "[analysis][course]") {
   std::ostringstream text;
   write_sections_text(text, sections());

@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
+#include "core/text/spreadsheet_cell.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
@@ -99,7 +100,8 @@ class CsvReader {
         fmt::format("{}:{}: a quote is out of place or left open", file_, row_.line)};
   }
   static void end_cell(void* text, std::size_t size, void* self) {
-    static_cast<CsvReader*>(self)->row_.cells.emplace_back(static_cast<const char*>(text), size);
+    static_cast<CsvReader*>(self)->row_.cells.emplace_back(
+        core::text_of_cell({static_cast<const char*>(text), size}));
   }
   static void end_row(int /*terminator*/, void* self) {
     auto& reader = *static_cast<CsvReader*>(self);
@@ -148,7 +150,8 @@ CsvText read_csv(std::istream& text, const std::string& file) {
   return CsvReader{file}.read(table_text(text, file));
 }
 
-std::string csv_cell(const std::string& text) {
+std::string csv_cell(const std::string& unguarded) {
+  const std::string text = core::guarded_cell(unguarded);
   const bool needs_quotes = text.find_first_of(",\"\r\n#") != std::string::npos ||
                             text.starts_with(' ') || text.ends_with(' ');
   if (!needs_quotes) {

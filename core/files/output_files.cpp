@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -192,19 +194,69 @@ std::string without_slash(std::string directory) {
   return directory;
 }
 
+// Locked for as long as the program that fills it lives: the lock of one that was killed is gone.
+class LockedDirectory {
+ public:
+  explicit LockedDirectory(const std::string& name)
+      // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the way of the C library
+      : descriptor_{open(name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)},
+        is_locked_{descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0} {}
+  ~LockedDirectory() {
+    if (descriptor_ >= 0) {
+      close(descriptor_);
+    }
+  }
+  LockedDirectory(const LockedDirectory&) = delete;
+  LockedDirectory& operator=(const LockedDirectory&) = delete;
+  LockedDirectory(LockedDirectory&&) = delete;
+  LockedDirectory& operator=(LockedDirectory&&) = delete;
+  bool is_locked() const { return is_locked_; }
+
+ private:
+  int descriptor_;
+  bool is_locked_;
+};
+
+// "NAME.unfinished-PID-N", and nothing else that may begin so.
+bool is_unfinished_of(const std::string& file, const std::string& final_name) {
+  const std::string prefix = fs::path{final_name}.filename().string() + ".unfinished-";
+  constexpr std::string_view allowed = "0123456789-";
+  return file.starts_with(prefix) && file.size() > prefix.size() &&
+         file.find_first_not_of(allowed, prefix.size()) == std::string::npos;
+}
+
+// Where the file system knows no locks, they stay: nobody can tell whether they are still filled.
+void remove_what_killed_programs_left(const std::string& final_name) {
+  std::error_code error;
+  std::vector<fs::path> left;
+  for (fs::directory_iterator at{fs::absolute(final_name).parent_path(), error}, end;
+       !error && at != end; at.increment(error)) {
+    if (is_unfinished_of(at->path().filename().string(), final_name)) {
+      left.push_back(at->path());
+    }
+  }
+  for (const fs::path& directory : left) {
+    if (const LockedDirectory lock{directory.string()}; lock.is_locked()) {
+      fs::remove_all(directory, error);
+    }
+  }
+}
+
 // Removed with all that is in it, unless it has been renamed.
 class Unfinished {
  public:
   explicit Unfinished(const std::string& final_name) {
+    remove_what_killed_programs_left(final_name);
     std::error_code error;
     bool is_made = false;
-    for (int i = 0; !is_made && !error; ++i) {  // what a killed program left stays as it is
+    for (int i = 0; !is_made && !error; ++i) {
       name_ = fmt::format("{}.unfinished-{}-{}", final_name, getpid(), i);
       is_made = fs::create_directory(name_, error);
     }
     if (error) {
       throw InvalidInput{final_name + ": cannot be made: " + error.message()};
     }
+    lock_.emplace(name_);
   }
   ~Unfinished() {
     std::error_code ignored;
@@ -218,6 +270,7 @@ class Unfinished {
 
  private:
   std::string name_;
+  std::optional<LockedDirectory> lock_;
 };
 
 void rename_to_new(const std::string& from, const std::string& to) {

@@ -34,8 +34,8 @@ void write_all_or_none(const std::vector<NewFile>& files, Existing existing);
 void make_directories(const std::string& directory);
 // Makes a new directory all at once: `fill` writes into an unfinished one beside it, given its
 // name, which gets the final name when everything is in it. The remains of a killed program are
-// called NAME.unfinished-… and never read. Throws InvalidInput, and leaves nothing, if there is
-// something of that name already or it cannot be made; and what `fill` throws.
+// called NAME.unfinished-…; the next one removes them. Throws InvalidInput, and leaves nothing, if
+// there is something of that name already or it cannot be made; and what `fill` throws.
 void write_new_directory(const std::string& directory,
                          const std::function<void(const std::string& unfinished)>& fill);
 // The same for a single file, which `fill` creates under the name that it is given.

@@ -52,6 +52,10 @@ std::string csvw_metadata(const Provenance& provenance, const std::vector<Descri
                 {"dc:title", provenance.title},
                 {"dc:source", "protocol of SHA-256 " + provenance.protocol_sha256},
                 {"dc:creator", provenance.program},
+                {"rdfs:comment",
+                 "So that spreadsheets run no text as a formula, one that begins with = + - @, a "
+                 "tab or a line break and is no number has an apostrophe before it, which belongs "
+                 "not to the text; one that begins with apostrophes before these has one more."},
                 {"dialect", {{"encoding", "utf-8"}, {"header", true}, {"doubleQuote", true}}}};
   for (const DescribedFile& file : files) {
     Json table{{"url", file.url}, {"dc:description", file.description}};

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+
+#include "core/text/spreadsheet_cell.hpp"
 namespace tapstudy::results {
 namespace {
 using Buffer = fmt::memory_buffer;
@@ -18,7 +20,8 @@ bool needs_quotes(const std::string& text) {
          text.front() == ' ' || text.back() == ' ';
 }
 
-void append_text(Buffer& line, const std::string& text) {
+void append_text(Buffer& line, const std::string& stored) {
+  const std::string text = core::guarded_cell(stored);
   if (!needs_quotes(text)) {
     append(line, text);
     return;

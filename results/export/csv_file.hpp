@@ -8,8 +8,9 @@ namespace tapstudy::results {
 inline constexpr const char* missing_in_csv = "NA";
 
 // Writes a table as CSV (RFC 4180, lines ended by LF, UTF-8), names of columns first. Text is
-// literal: quoted where it holds a comma, a quote, a line end or a tab, begins or ends with a
-// space, or is empty; never changed. Reals have the fewest digits that give the same double again.
+// quoted where it holds a comma, a quote, a line end or a tab, begins or ends with a space, or is
+// empty; so that no spreadsheet runs it, it is guarded (core/text/spreadsheet_cell.hpp). Reals have
+// the fewest digits that give the same double again.
 void write_csv(std::ostream& out, const Table& table);
 
 // What stands for a missing value in tab-separated files of the Brain Imaging Data Structure.

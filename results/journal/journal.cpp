@@ -27,8 +27,12 @@ class LockedFile {
   explicit LockedFile(const std::string& file)
       // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the way of the C library
       : descriptor_{open(file.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0644)} {
-    if (descriptor_ < 0 || flock(descriptor_, LOCK_EX) != 0) {
-      const StoreError error = failure(file, "cannot be opened");
+    if (descriptor_ < 0) {
+      throw failure(file, "cannot be written");
+    }
+    if (flock(descriptor_, LOCK_EX) != 0) {
+      const StoreError error =
+          failure(file, "cannot be locked (a study belongs on a disk of this machine)");
       close(descriptor_);
       throw error;
     }

@@ -112,8 +112,21 @@ JournalledAnswer answer_from(const Json& line) {
   return answer;
 }
 
+void check_session_is_there(const Json& line, const JournalContent& content) {
+  const std::int64_t id = line.at("session_id");
+  if (std::ranges::find(content.sessions, id, &SessionRow::id) == content.sessions.end()) {
+    throw StoreError{fmt::format("is of session {}, which does not stand before it", id)};
+  }
+}
+
 void add_line(const Json& line, JournalContent& content) {
   const std::string kind = line.at("kind");
+  if (kind != "study" && kind != "session") {
+    check_session_is_there(line, content);
+  }
+  if (kind == "study" && !content.study.protocol_text.empty()) {
+    throw StoreError{"begins a second study"};
+  }
   if (kind == "study") {
     content.study = study_from(line);
   } else if (kind == "session") {
@@ -286,8 +299,11 @@ JournalContent read_journal(const std::string& directory) {
     chain = line.chain;
     try {
       add_line(Json::parse(line.body), content);
-    } catch (const std::exception& error) {
+    } catch (const StoreError& error) {
       throw StoreError{fmt::format("{}, line {}: {}", file, number, error.what())};
+    } catch (const Json::exception&) {
+      throw StoreError{
+          fmt::format("{}, line {}: is not a line as tapstudy writes it", file, number)};
     }
   }
   if (content.study.protocol_text.empty()) {
@@ -330,6 +346,13 @@ std::vector<std::string> differing_study_and_sessions(const StudyRow& study,
                !keys.empty()) {
       differences.push_back(fmt::format("session {} (participant {}): {} not as in answers.journal",
                                         journalled.id, journalled.participant_id, keys));
+    }
+  }
+  for (const SessionRow& session : sessions) {
+    if (std::ranges::find(journal.sessions, session.id, &SessionRow::id) ==
+        journal.sessions.end()) {
+      differences.push_back(fmt::format("session {} (participant {}): not in answers.journal",
+                                        session.id, session.participant_id));
     }
   }
   return differences;

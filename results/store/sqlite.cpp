@@ -12,10 +12,28 @@ namespace tapstudy::results {
 namespace {
 constexpr int patience_ms = 5000;  // for another process that is writing
 
+// What SQLite's words do not say.
+const char* hint_for(int code) {
+  constexpr int primary = 0xff;
+  if (code == SQLITE_IOERR_WRITE) {
+    return " (is the disk full?)";
+  }
+  switch (code & primary) {
+    case SQLITE_FULL:
+      return " (is the disk full?)";
+    case SQLITE_BUSY:
+      return " (another program is writing, or the file system knows no locks: a study belongs on "
+             "a disk of this machine)";
+    case SQLITE_CANTOPEN:
+      return " (may it and its directory be written? where not, a copy can be read)";
+    default:
+      return "";
+  }
+}
+
 StoreError failure(const std::string& file, sqlite3* handle, int code) {
   const char* words = handle != nullptr ? sqlite3_errmsg(handle) : sqlite3_errstr(code);
-  const bool is_full = code == SQLITE_FULL || code == SQLITE_IOERR_WRITE;
-  return StoreError{fmt::format("{}: {}{}", file, words, is_full ? " (is the disk full?)" : "")};
+  return StoreError{fmt::format("{}: {}{}", file, words, hint_for(code))};
 }
 
 // Absolute, because SQLite may be built to take "file:…" for a URI.

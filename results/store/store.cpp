@@ -93,6 +93,12 @@ Store Store::open_existing(const std::string& directory) {
   }
   roll_back_unfinished(directory);
   Store store{Database{database_file(directory), Database::Access::read}, std::nullopt};
+  if (store.is_empty()) {
+    throw StoreError{fmt::format(
+        "{}: is the unfinished beginning of a study, and holds nothing (its program was ended "
+        "before the first session; another with the same --out begins it anew)",
+        database_file(directory))};
+  }
   store.check_is_sound();
   return store;
 }
@@ -112,7 +118,7 @@ Store Store::from_journal(const std::string& directory) {
   const JournalContent content = read_journal(directory);
   Store store{Database::in_memory(journal_file(directory)), std::nullopt};
   store.create(content.study);
-  std::map<std::int64_t, std::int64_t> new_ids;  // sessions without an answer are not in it
+  std::map<std::int64_t, std::int64_t> new_ids;  // journals of 0.1 lack sessions without an answer
   for (SessionRow session : content.sessions) {
     const std::int64_t id = session.id;
     session.resumes.reset();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "results/store/store.hpp"
@@ -78,10 +79,26 @@ bool Store::has_sessions(const std::string& participant_id) {
   return latest_session(participant_id).has_value();
 }
 
+namespace {
+// Once they are committed: what is rolled back must not be in the journal.
+void journal_sessions(Store& store, Database& database, std::optional<Journal>& journal) {
+  if (!journal || database.is_in_transaction()) {
+    return;
+  }
+  const auto of_study = [&store] { return store.study(); };
+  if (!journal->complete(of_study, store.sessions(), {})) {
+    journal->complete(of_study, store.sessions(), store.entries_for_journal());
+  }
+}
+}  // namespace
+
 void Store::in_one_transaction(const std::function<void()>& act) {
-  Transaction all{database_};
-  act();
-  all.commit();
+  {
+    Transaction all{database_};
+    act();
+    all.commit();
+  }
+  journal_sessions(*this, database_, journal_);
 }
 
 void Store::add_session(SessionRow& session) {
@@ -117,6 +134,7 @@ void Store::add_session(SessionRow& session) {
       .finish();
   session.id = database_.last_row_id();
   all.commit();
+  journal_sessions(*this, database_, journal_);
 }
 
 SaveOutcome Store::add_trial(const TrialRecord& record) {

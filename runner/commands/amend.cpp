@@ -11,6 +11,7 @@
 #include "results/store/recorder.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
+#include "runner/session/engine/stored_names.hpp"
 #include "runner/session/operators/operator_desk.hpp"
 #include "runner/studies/stored_study.hpp"
 #include "runner/terminal/session_lock.hpp"
@@ -96,9 +97,10 @@ AnswerInView in_view(const results::JournalledAnswer& answer, const protocols::P
 void amend(const AmendOptions& options) {
   const OperatorCommand command = amendment_in(options.action);
   const results::StudyRow study = results::Store::open_existing(options.directory).study();
-  const protocols::Protocol protocol = stored_protocol(study);
   const ParticipantLock lock{options.directory, options.participant};
   results::Store store = results::Store::open_or_create(options.directory, study);
+  const protocols::Protocol protocol = stored_protocol(study);
+  check_names(store, protocol);
   const results::SessionRow session = session_of(options, command.trial, store);
   results::Recorder recorder{store};
   OperatorDesk desk{

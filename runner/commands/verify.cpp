@@ -6,7 +6,6 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -14,14 +13,13 @@
 #include "analysis/report/writers.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
-#include "protocols/protocol.hpp"
 #include "results/journal/journal.hpp"
-#include "results/store/recomputation.hpp"
 #include "results/store/store.hpp"
 #include "results/store_error.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/studies/stored_study.hpp"
 #include "runner/studies/study_summary.hpp"
+#include "runner/studies/study_verification.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 // A report that lies in a study's directory, against one made anew from the stored answers.
@@ -245,81 +243,39 @@ struct VerifyOptions {
   std::string directory;
 };
 
-std::set<std::string> lines_of(const results::JournalEntries& entries) {
-  const std::vector<std::string> lines = results::to_lines(entries);
-  return {lines.begin(), lines.end()};
-}
+constexpr std::size_t max_printed = 20;
 
-// Counts the lines that the others lack; prints the first few.
-int print_missing(const std::set<std::string>& lines, const std::set<std::string>& others,
-                  const char* where) {
-  constexpr int max_printed = 5;
-  int missing = 0;
-  for (const std::string& line : lines) {
-    if (!others.contains(line) && ++missing <= max_printed) {
-      fmt::print("not in {}: {}\n", where, line);
-    }
+// Prints the first of them; returns a description of the fault, or an empty text.
+std::string print_wrong(const std::vector<std::string>& wrong, const char* before,
+                        const char* description) {
+  constexpr std::size_t longest = 300;
+  for (std::size_t i = 0; i < std::min(wrong.size(), max_printed); ++i) {
+    fmt::print("{}{}\n", before, core::shortened(wrong[i], longest));
   }
-  return missing;
-}
-
-// A protocol that this version cannot read yields a rule that knows no block.
-results::TaskRule rule_of(const results::StudyRow& study) {
-  auto protocol = std::make_shared<protocols::Protocol>();
-  try {
-    *protocol = stored_protocol(study);
-  } catch (const core::InvalidInput&) {
-    warn("the study's protocol cannot be read by this version");
-  }
-  const auto block_of = [protocol](const results::TrialRow& trial) {
-    const auto found = std::ranges::find(protocol->blocks, trial.block, &protocols::Block::name);
-    return found == protocol->blocks.end() ? nullptr : &*found;
-  };
-  return {[block_of](const results::TrialRow& trial) { return block_of(trial) != nullptr; },
-          [block_of](const results::TrialRow& trial,
-                     const std::vector<results::AlternativeRow>& alternatives,
-                     const std::string& response) {
-            const protocols::Block& block = *block_of(trial);
-            return block.task->is_correct(stored_trial(trial, alternatives, block), block,
-                                          response);
-          }};
+  return wrong.empty() ? "" : fmt::format("{}: {}", description, wrong.size());
 }
 
 // Returns a description of the fault, or an empty text.
 std::string print_recomputed(const results::Recomputation& recomputed) {
-  constexpr std::size_t max_printed = 20;
-  const auto& differences = recomputed.differences;
-  for (std::size_t i = 0; i < std::min(differences.size(), max_printed); ++i) {
-    fmt::print("differs: {}\n", differences[i]);
-  }
+  std::string fault = print_wrong(recomputed.differences,
+                                  "differs: ", "stored values that differ from those recomputed");
   fmt::print("recomputed       {} events from their traces, {} answers by their task's rule{}\n",
              recomputed.events, recomputed.answers,
              recomputed.unknown_blocks == 0 ? ""
                                             : fmt::format(" ({} of blocks that the protocol lacks)",
                                                           recomputed.unknown_blocks));
-  return differences.empty() ? ""
-                             : fmt::format("stored values that differ from those recomputed: {}",
-                                           differences.size());
-}
-
-// Returns a description of the fault, or an empty text.
-std::string print_study_differences(const std::vector<std::string>& differences) {
-  for (const std::string& difference : differences) {
-    fmt::print("differs: {}\n", difference);
-  }
-  return differences.empty() ? ""
-                             : fmt::format("rows of the study and its sessions that differ: {}",
-                                           differences.size());
+  return fault;
 }
 
 // Compares journal and database; returns a description of the fault, or an empty text.
-std::string print_compared(const results::JournalEntries& in_store,
-                           const results::JournalEntries& in_journal) {
-  fmt::print("answers.journal  {} answers: hash chain intact\n", in_journal.answers.size());
-  const auto stored = lines_of(in_store);
-  const auto journalled = lines_of(in_journal);
-  const int missing = print_missing(stored, journalled, "answers.journal") +
-                      print_missing(journalled, stored, "study.db");
+std::string print_compared(const Verification& found) {
+  if (!found.journal_fault.empty()) {
+    return found.journal_fault;
+  }
+  fmt::print("answers.journal  {} answers: hash chain intact\n", found.journalled_answers);
+  print_wrong(found.not_in_journal, "not in answers.journal: ", "");
+  print_wrong(found.not_in_database, "not in study.db: ", "");
+  const std::size_t missing = found.not_in_journal.size() + found.not_in_database.size();
   if (missing > 0) {
     return fmt::format("answers or actions that are not the same in both: {}", missing);
   }
@@ -336,7 +292,6 @@ std::string print_published(const PublishedReport& report) {
     fmt::print("report.json      not compared: {}\n", report.not_compared);
     return "";
   }
-  constexpr std::size_t max_printed = 20;
   for (std::size_t i = 0; i < std::min(report.differences.size(), max_printed); ++i) {
     fmt::print("differs: {}\n", report.differences[i]);
   }
@@ -353,20 +308,21 @@ std::string print_published(const PublishedReport& report) {
 
 void verify(const VerifyOptions& options) {
   results::Store store = results::Store::open_existing(options.directory);
-  const results::Recomputation recomputed = results::recompute(store, rule_of(store.study()));
-  const results::JournalEntries in_store = store.entries_for_journal();
-  fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", store.trials().size(),
-             in_store.answers.size(), recomputed.ticks);
-  const results::JournalContent journal = results::read_journal(options.directory);
-  std::vector<std::string> wrong{print_recomputed(recomputed),
-                                 print_study_differences(results::differing_study_and_sessions(
-                                     store.study(), store.sessions(), journal)),
-                                 print_compared(in_store, journal.entries)};
-  std::erase(wrong, "");
-  if (wrong.empty()) {  // else a report made anew would be wrong, too
-    wrong.push_back(print_published(published_report(options.directory, store)));
-    std::erase(wrong, "");
+  const Verification found = verification_of(store, options.directory);
+  fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", found.trials,
+             found.answers, found.recomputed.ticks);
+  for (const std::string& remark : found.remarks) {
+    warn(remark);
   }
+  std::vector<std::string> wrong{print_recomputed(found.recomputed),
+                                 print_wrong(found.broken, "wrong: ", "rules that rows break"),
+                                 print_wrong(found.study_and_sessions, "differs: ",
+                                             "rows of the study and its sessions that differ"),
+                                 print_compared(found)};
+  if (found.is_sound()) {  // else a report made anew would be wrong, too
+    wrong.push_back(print_published(published_report(options.directory, store)));
+  }
+  std::erase(wrong, "");
   if (!wrong.empty()) {
     throw results::StoreError{fmt::format("{}: {}", options.directory, fmt::join(wrong, "; "))};
   }

@@ -29,6 +29,15 @@ RateLimit::Duration RateLimit::delay_of(double cost, Time now) {
   return std::max(Duration::zero(), paid_until_ - burst_ - now);
 }
 
+ClientLimits::Limits& ClientLimits::of(const std::string& client) {
+  const std::lock_guard lock{mutex_};
+  const auto known = clients_.find(client);
+  if (known != clients_.end()) {
+    return known->second;
+  }
+  return clients_.size() < max_clients ? clients_[client] : others_;
+}
+
 namespace {
 constexpr int max_streams = 8;                 // of each role
 constexpr const char* threads = "64";          // one for each open stream, the rest for requests
@@ -218,7 +227,6 @@ int ConsoleServer::handle(mg_connection* connection) {
     return refuse(connection);
   }
   try {
-    wait_for(server->requests_, 1.0);
     return server->serve(connection);
   } catch (const std::exception&) {  // none may leave a callback of C
     return send(connection, refusal(500));
@@ -254,16 +262,25 @@ int ConsoleServer::serve(mg_connection* connection) {
   return send(connection, refusal(403));
 }
 
-int ConsoleServer::serve(mg_connection* connection, Role role, const std::string& path) {
-  const std::string method = mg_get_request_info(connection)->request_method;
-  if (method == "GET" && path == "events") {
+int ConsoleServer::serve_get(mg_connection* connection, Role role, const std::string& path,
+                             RateLimit& bytes) {
+  if (path == "events") {
     stream(connection, role);
     return 200;
   }
+  const Reply reply = on_full_stack([&] { return api_.get(role, path); });
+  wait_for(bytes, static_cast<double>(reply.body.size()));
+  return send(connection, reply);
+}
+
+int ConsoleServer::serve(mg_connection* connection, Role role, const std::string& path) {
+  const mg_request_info* const request = mg_get_request_info(connection);
+  ClientLimits::Limits& limits = limits_.of(
+      fmt::format("{} {}", static_cast<int>(role), static_cast<const char*>(request->remote_addr)));
+  wait_for(limits.requests, 1.0);
+  const std::string method = request->request_method;
   if (method == "GET") {
-    const Reply reply = on_full_stack([&] { return api_.get(role, path); });
-    wait_for(bytes_, static_cast<double>(reply.body.size()));
-    return send(connection, reply);
+    return serve_get(connection, role, path, limits.bytes);
   }
   if (method != "POST" || header(connection, "X-Tapstudy") != "1") {
     return send(connection, refusal(405));

@@ -2,6 +2,8 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -25,6 +27,24 @@ class RateLimit {
   std::mutex mutex_;
   Time paid_until_;
 };
+
+// The limits of everybody who asks, apart: one who asks too much delays nobody else. Once so many
+// have asked, further ones share the limits of one.
+class ClientLimits {
+ public:
+  static constexpr std::size_t max_clients = 64;
+  struct Limits {
+    // More than a page ever asks would take the processor from the loop.
+    RateLimit requests{200.0, 100.0};
+    RateLimit bytes{8.0e6, 8.0e6};  // a page with all that it loads, several times
+  };
+  Limits& of(const std::string& client);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, Limits> clients_;
+  Limits others_;
+};
 }  // namespace tapstudy::runner
 
 struct mg_connection;
@@ -39,7 +59,8 @@ struct ServerAddress {
 void check_can_listen(const ServerAddress& address);
 
 // Serves the pages of one session by HTTP. A page's address holds a random token; without it, or
-// with a foreign Host or Origin header, nothing is served. Its threads never touch the haptic loop.
+// with a foreign Host or Origin header, nothing is served, and nobody's limit is used. Its threads
+// never touch the haptic loop.
 class ConsoleServer {
  public:
   // Throws InvalidInput if the address cannot be listened to.
@@ -55,6 +76,7 @@ class ConsoleServer {
   static int handle(mg_connection* connection);
   int serve(mg_connection* connection);
   int serve(mg_connection* connection, Role role, const std::string& path);
+  int serve_get(mg_connection* connection, Role role, const std::string& path, RateLimit& bytes);
   bool is_from_here(mg_connection* connection) const;
   void stream(mg_connection* connection, Role role);
   std::string token(Role role) const { return tokens_.at(static_cast<std::size_t>(role)); }
@@ -64,9 +86,7 @@ class ConsoleServer {
   std::array<std::string, roles.size()> tokens_;
   std::atomic<bool> is_open_{false};  // its port is known
   std::atomic<bool> is_closing_{false};
-  // More than pages ever ask would take the processor from the loop.
-  RateLimit requests_{200.0, 100.0};
-  RateLimit bytes_{8.0e6, 8.0e6};                         // two pages, with all that they load
+  ClientLimits limits_;
   std::array<std::atomic<int>, roles.size()> streams_{};  // ever opened
   mg_context* context_{nullptr};
 };

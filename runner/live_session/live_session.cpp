@@ -15,6 +15,7 @@
 #include "runner/session/devices/rigs.hpp"
 #include "runner/session/engine/remaining_trials.hpp"
 #include "runner/session/engine/session_row.hpp"
+#include "runner/session/engine/stored_names.hpp"
 #include "runner/session/markers/markers.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/operator_dialogue.hpp"
@@ -210,6 +211,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   std::unique_ptr<device::PcmSink> card = open_masking_card(live.protocol, live.rig);
   results::Store store =
       results::Store::open_or_create(live.directory, study_row(live.protocol, live.protocol_file));
+  check_names(store, live.protocol);
   BegunSession session = begin_session(
       request_of(live), live.protocol, live.rig,
       run_preflight(live.rig, *device, settings.period, inhibitor ? inhibitor->outcome() : ""),

@@ -25,6 +25,7 @@
 #include "protocols/schedule/schedule.hpp"
 #include "results/store/study_queries.hpp"
 #include "runner/session/engine/practice.hpp"
+#include "runner/session/engine/stored_names.hpp"
 #include "runner/studies/methods_section.hpp"
 #include "runner/studies/rendered_study.hpp"
 #include "runner/studies/stored_results.hpp"
@@ -442,8 +443,15 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   StoredResults all;
   std::vector<std::string> directories;
   for (const StudyStore& each : stores) {
+    check_names(*each.store, protocol);
     append(all, stored_results(*each.store, protocol, mode, detail));
     directories.push_back(each.directory);
+  }
+  if (std::ranges::all_of(
+          stores, [](const StudyStore& each) { return each.store->sessions().empty(); })) {
+    throw core::InvalidInput{
+        fmt::format("{}: is the unfinished beginning of a study, without a session",
+                    fmt::join(directories, ", "))};
   }
   if (all.answers.empty()) {
     throw core::InvalidInput{fmt::format(

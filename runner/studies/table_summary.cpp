@@ -21,6 +21,25 @@ namespace {
 using analysis::NamedCsv;
 using analysis::Summary;
 
+// A table of tapstudy's BIDS export: who took part, as whom, and whether they were excluded is in
+// other files of it.
+void check_says_whose(const NamedCsv& table) {
+  if (table.text.rows.empty()) {
+    return;
+  }
+  const std::vector<std::string>& header = table.text.rows.front().cells;
+  const auto has = [&](const char* column) {
+    return std::ranges::find(header, column) != header.end();
+  };
+  if (has("trial_type") && has("alternatives") && has("is_practice") && has("is_catch") &&
+      !has("participant_id")) {
+    throw core::InvalidInput{
+        fmt::format("{}: is of a BIDS export of tapstudy, whose rows do not say who was simulated "
+                    "or excluded: report the study's directory, or trials.csv of its CSV export",
+                    table.file)};
+  }
+}
+
 NamedCsv read_file(const std::string& file, const std::string& encoding) {
   std::ifstream text{file};
   if (!text) {
@@ -32,6 +51,7 @@ NamedCsv read_file(const std::string& file, const std::string& encoding) {
   NamedCsv table{file,
                  is_json ? analysis::read_json_rows(whole, file) : analysis::read_csv(whole, file)};
   analysis::drop_further_headers(table.text);
+  check_says_whose(table);
   return table;
 }
 

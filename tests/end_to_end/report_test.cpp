@@ -351,6 +351,23 @@ TEST_CASE("exported answers are counted as the study's own report counts them, a
   CHECK(read["response_times"][0] == own["response_times"][0]);
 }
 
+TEST_CASE("a BIDS export is not counted, for its rows do not say who was simulated",
+          "[end_to_end]") {
+  const testing::TempDirectory directory;
+  REQUIRE(testing::tapstudy({"simulate", testing::shipped("paper/discrimination.yaml"),
+                             "--participants", "1", "--no-traces", "--out", directory / "study"})
+              .exit_code == 0);
+  REQUIRE(testing::tapstudy(
+              {"export", directory / "study", "--format", "bids", "--out", directory / "bids"})
+              .exit_code == 0);
+  const auto run = testing::tapstudy(
+      {"report", "--counts", directory / "bids/sub-sim01/beh/sub-sim01_task-discrimination_beh.tsv",
+       "--stimulus-column", "trial_type", "--response-column", "response"});
+  CHECK(run.exit_code == 2);
+  CHECK_THAT(run.standard_error, Contains("report the study's directory, or trials.csv"));
+  CHECK(std::ranges::count(run.standard_error, '\n') == 1);
+}
+
 TEST_CASE("a file that is named twice is refused, not counted twice", "[end_to_end]") {
   const testing::TempDirectory directory;
   testing::write(directory / "answers.csv", "participant,stimulus,response\nP01,a,a\nP01,b,a\n");

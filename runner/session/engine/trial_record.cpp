@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "device/device.hpp"
 #include "results/traces/trace_collector.hpp"
+#include "runner/session/engine/alternative_rows.hpp"
 namespace tapstudy::runner {
 std::optional<SessionState> state_of(TrialEnding ending) {
   switch (ending) {
@@ -86,14 +85,7 @@ results::TrialRecord trial_record(std::int64_t session_id, const protocols::Plan
                   result.trace.duration_s,
                   trial.is_catch,
                   block.presented == protocols::Presented::real_plates};
-  const std::vector<std::string> labels = trial.task->alternative_labels(trial);
-  const std::vector<protocols::Alternative> alternatives = rendered(trial, block);
-  for (std::size_t i = 0; i < alternatives.size(); ++i) {
-    const std::string label =
-        labels.empty() ? std::string{} : labels[std::min(i, labels.size() - 1)];
-    record.alternatives.push_back({static_cast<int>(i), label, alternatives[i].stimulus,
-                                   alternatives[i].values, alternatives[i].is_comparison});
-  }
+  record.alternatives = alternative_rows(trial, block);
   if (answer) {
     record.response = response_row(trial, block, *answer, result.trace.events);
   }

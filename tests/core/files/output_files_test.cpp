@@ -1,6 +1,10 @@
 // Files that belong together appear together or not at all.
 #include "core/files/output_files.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <filesystem>
 #include <stdexcept>
 
@@ -37,6 +41,29 @@ TEST_CASE("files replace what was there, also what a killed program left", "[cor
                                           core::Existing::replaced),
                   std::logic_error);
   CHECK_FALSE(fs::exists(directory / "c"));
+}
+
+TEST_CASE("what killed programs left of a directory is removed by the next, and nothing else",
+          "[core][output]") {
+  const testing::TempDirectory directory;
+  for (const char* const name : {"out.unfinished-1-0", "out.unfinished-2-0", "out.unfinished-notes",
+                                 "other.unfinished-1-0"}) {
+    fs::create_directory(directory / name);
+    testing::write(fs::path{directory / name} / "half", "half");
+  }
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the way of the C library
+  const int filled = open((directory / "out.unfinished-2-0").c_str(), O_RDONLY | O_DIRECTORY);
+  REQUIRE(flock(filled, LOCK_EX) == 0);  // by a program that runs
+  core::write_new_directory(directory / "out", [](const std::string& unfinished) {
+    testing::write(unfinished + "/whole", "whole");
+  });
+  close(filled);
+  CHECK(fs::exists(directory / "out/whole"));
+  CHECK_FALSE(fs::exists(directory / "out.unfinished-1-0"));
+  CHECK(fs::exists(directory / "out.unfinished-2-0"));
+  CHECK(fs::exists(directory / "out.unfinished-notes"));
+  CHECK(fs::exists(directory / "other.unfinished-1-0"));
+  CHECK(testing::entries(directory.path()) == 4);
 }
 
 TEST_CASE("a file whose writer fails is not left half written", "[core][output]") {

@@ -4,6 +4,7 @@ Usage: csv_reader.py STUDY EXPORT. Prints the tables compared; fails with the fi
 """
 import json
 import math
+import re
 import sqlite3
 import subprocess
 import sys
@@ -39,11 +40,19 @@ FROM = {
 }
 
 
+def text_of(cell):
+    """As csv-metadata.json says: without the apostrophe that guards it from spreadsheets."""
+    behind = cell.lstrip("'")
+    is_formula = behind[:1] in tuple("=+-@\t\r\n\uff1d\uff0b\uff0d\uff20")
+    is_number = re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", behind)
+    return cell[1:] if cell[:1] == "'" and is_formula and not is_number else cell
+
+
 def same(read, stored, tolerance=0.0):
     if stored is None:
         return read is None or (isinstance(read, float) and math.isnan(read))
     if isinstance(stored, str):
-        return read == stored or (stored == "" and not isinstance(read, str))
+        return (isinstance(read, str) and text_of(read) == stored) or (stored == "" and not isinstance(read, str))
     return math.isclose(float(read), stored, rel_tol=tolerance, abs_tol=0.0)
 
 

@@ -87,8 +87,9 @@ TEST_CASE("views say who was excluded, and which answers were corrected", "[resu
             "WHERE mode = 'pilot'") == "0|2|1.6\n1|1|0.4\n");
 }
 
-TEST_CASE("text is quoted where it must be and never changed", "[results][export]") {
-  CHECK(csv_of({{std::string{"=cmd()"}}}) == "a\n=cmd()\n");
+TEST_CASE("text is quoted and guarded where it must be, and else never changed",
+          "[results][export]") {
+  CHECK(csv_of({{std::string{"=cmd()"}}, {std::string{"-3"}}}) == "a\n'=cmd()\n-3\n");
   CHECK(csv_of({{std::string{"a,\"b\"\r\n"}}}) == "a\n\"a,\"\"b\"\"\r\n\"\n");
   CHECK(csv_of({{std::string{}}, {std::monostate{}}}) == "a\n\"\"\nNA\n");
   CHECK(csv_of({{std::nan("")}, {0.1 + 0.2}, {-HUGE_VAL}}) == "a\nNA\n0.30000000000000004\n-INF\n");

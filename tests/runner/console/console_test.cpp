@@ -335,6 +335,22 @@ TEST_CASE(
   CHECK(limit.delay_of(1.0, now) == 100ms);
 }
 
+TEST_CASE("one who asks too much delays nobody else, and strangers fill no memory",
+          "[runner][console]") {
+  ClientLimits limits;
+  const RateLimit::Time now{1h};
+  for (int i = 0; i < 200; ++i) {
+    limits.of("participant 127.0.0.1").requests.delay_of(1.0, now);
+  }
+  CHECK(limits.of("participant 127.0.0.1").requests.delay_of(1.0, now) > 0s);
+  CHECK(limits.of("operator 127.0.0.1").requests.delay_of(1.0, now) == 0s);
+  for (std::size_t i = 0; i < ClientLimits::max_clients; ++i) {
+    limits.of(std::to_string(i));
+  }
+  CHECK(&limits.of("one more") == &limits.of("another"));
+  CHECK(&limits.of("operator 127.0.0.1") != &limits.of("another"));
+}
+
 // Which plate a participant's page draws: never one that tells the answer, or that is not felt.
 TEST_CASE("a plate is drawn unless its size varies, for the picture would be of another one",
           "[runner][console]") {

@@ -1,0 +1,229 @@
+#include "runner/studies/stored_course.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/text/plain_text.hpp"
+#include "protocols/schedule/schedule.hpp"
+#include "runner/session/engine/alternative_rows.hpp"
+#include "runner/session/engine/session_states.hpp"
+#include "runner/session/operators/operator.hpp"
+namespace tapstudy::runner {
+namespace {
+using protocols::PlannedTrial;
+using protocols::Protocol;
+using results::Statement;
+using results::Store;
+
+std::string quoted(const std::string& text) {
+  constexpr std::size_t longest = 60;
+  return "'" + core::shortened(text, longest) + "'";
+}
+
+// Unset: this version draws another order.
+std::optional<protocols::Schedule> schedule_of(const results::SessionRow& session,
+                                               const Protocol& protocol) {
+  try {
+    protocols::Schedule schedule = protocols::make_schedule(
+        protocol, session.seed, session.order_index, session.planned_order);
+    return described(schedule) == session.planned_order ? std::optional{std::move(schedule)}
+                                                        : std::nullopt;
+  } catch (const core::Error&) {
+    return std::nullopt;
+  }
+}
+
+// Printed and read by another machine, values may differ in their last digits.
+bool are_equal(const protocols::AxisValues& planned, const results::AxisValues& stored) {
+  constexpr double rounding = 1e-9;
+  return std::ranges::equal(planned, stored, [](const auto& one, const auto& other) {
+    return one.first == other.first &&
+           std::abs(one.second - other.second) <= rounding * std::abs(one.second);
+  });
+}
+
+// What a procedure chooses is not planned.
+bool are_equal(const std::vector<results::AlternativeRow>& planned,
+               const std::vector<results::AlternativeRow>& stored) {
+  return std::ranges::equal(planned, stored, [](const auto& one, const auto& other) {
+    return one.label == other.label && one.stimulus == other.stimulus &&
+           one.is_comparison == other.is_comparison &&
+           (one.axis_values.empty() || are_equal(one.axis_values, other.axis_values));
+  });
+}
+
+// Names what a stored trial, a row of `trial`, has otherwise; empty: nothing.
+std::string differing(const PlannedTrial& planned, Statement& row,
+                      const std::vector<results::AlternativeRow>& alternatives,
+                      const Protocol& protocol) {
+  const protocols::Block& block = protocol.block(planned.block);
+  std::string names;
+  const auto note = [&](const char* name, bool is_equal) {
+    names += is_equal ? "" : (names.empty() ? "" : ", ") + std::string{name};
+  };
+  note("block", row.text(3) == planned.block);
+  note("repetition", row.small_integer(4) == planned.repetition);
+  note("is_practice", row.flag(5) == planned.is_practice);
+  note("is_catch", row.flag(6) == planned.is_catch);
+  note("presented", row.flag(7) == (block.presented == protocols::Presented::real_plates));
+  note("alternative", are_equal(alternative_rows(planned, block), alternatives));
+  return names;
+}
+
+void check_trials(Store& store, const Protocol& protocol, CheckedCourse& course) {
+  std::map<std::int64_t, protocols::Schedule> schedules;
+  for (const results::SessionRow& session : store.sessions()) {
+    if (auto schedule = schedule_of(session, protocol)) {
+      schedules.emplace(session.id, std::move(*schedule));
+    } else {
+      ++course.unknown_orders;
+    }
+  }
+  const results::AlternativesOfTrials alternatives = store.alternatives();
+  store.each_row(
+      "SELECT trial_id, session_id, number, block, repetition, is_practice, is_catch, "
+      "presented = 'real' FROM trial ORDER BY trial_id",
+      [&](Statement& row) {
+        const auto schedule = schedules.find(row.integer(1));
+        if (schedule == schedules.end()) {
+          return;
+        }
+        const auto planned =
+            std::ranges::find(schedule->second, row.small_integer(2), &PlannedTrial::number);
+        if (planned == schedule->second.end()) {
+          course.wrong.push_back(
+              fmt::format("trial {}: number {} is not in the order of session {}", row.integer(0),
+                          row.integer(2), row.integer(1)));
+          return;
+        }
+        const auto stored = alternatives.find(row.integer(0));
+        const std::string names = differing(
+            *planned, row,
+            stored == alternatives.end() ? std::vector<results::AlternativeRow>{} : stored->second,
+            protocol);
+        if (!names.empty()) {
+          course.wrong.push_back(fmt::format("trial {}: {} not as in the order of session {}",
+                                             row.integer(0), names, row.integer(1)));
+        }
+      });
+}
+
+std::optional<SessionState> state_named(const std::string& text) {
+  for (int i = 0; i <= static_cast<int>(SessionState::ended); ++i) {
+    if (const auto state = static_cast<SessionState>(i); name(state) == text) {
+      return state;
+    }
+  }
+  return std::nullopt;
+}
+
+// One session's changes of state, in the order in which they were stored.
+struct Followed {
+  std::optional<SessionState> state;
+  std::optional<int> number;
+  double t_s{};
+};
+
+bool is_within_trial(SessionState state) {
+  using enum SessionState;
+  switch (state) {
+    case exploring:
+    case answering:
+    case confirmed:
+    case confidence:
+    case saved:
+    case repeated:
+    case timed_out:
+    case skipped:
+    case feedback:
+      return true;
+    case begun:
+    case instructions:
+    case resting:
+    case form:
+    case ready:
+    case paused:
+    case practised:
+    case faulted:
+    case stopped:
+    case ended:
+      break;
+  }
+  return false;
+}
+
+// Why this change cannot come next; empty: it can.
+std::string objection(const Followed& before, SessionState state, std::optional<int> number,
+                      double t_s) {
+  const bool may_come =
+      before.state ? may_follow(*before.state, state) : state == SessionState::begun;
+  if (!may_come) {
+    return before.state ? fmt::format("cannot follow '{}'", name(*before.state))
+                        : std::string{"cannot come first"};
+  }
+  const bool interrupts =
+      state == SessionState::paused &&
+      (before.state == SessionState::exploring || before.state == SessionState::answering);
+  if ((is_within_trial(state) || interrupts) && number != before.number) {
+    return "is of another trial than what came before";
+  }
+  const bool begins_or_fails = state == SessionState::ready || state == SessionState::faulted;
+  if (begins_or_fails != number.has_value() && !is_within_trial(state) && !interrupts) {
+    return number ? "is of a trial, but stands between trials" : "is of no trial";
+  }
+  return t_s < before.t_s ? "is earlier than what came before" : "";
+}
+
+void check_states(Store& store, CheckedCourse& course) {
+  std::map<std::int64_t, Followed> sessions;
+  store.each_row("SELECT session_id, state, number, t_s FROM session_event ORDER BY rowid",
+                 [&](Statement& row) {
+                   const std::int64_t session = row.integer(0);
+                   const std::optional<SessionState> state = state_named(row.text(1));
+                   Followed& before = sessions[session];
+                   const std::string wrong =
+                       state ? objection(before, *state, row.optional_int(2), row.real(3))
+                             : std::string{"is no state of a session"};
+                   if (!wrong.empty()) {
+                     course.wrong.push_back(fmt::format("session {}: {} at {} s {}", session,
+                                                        quoted(row.text(1)), row.real(3), wrong));
+                   }
+                   before = {state, row.optional_int(2), row.real(3)};
+                 });
+  for (const auto& [session, last] : sessions) {
+    if (last.state && last.state != SessionState::ended && last.state != SessionState::stopped &&
+        last.state != SessionState::faulted) {
+      course.open_sessions.push_back(fmt::format(
+          "session {} was neither ended nor stopped (is it running, was its program killed?)",
+          session));
+    }
+  }
+}
+
+void check_actions(Store& store, CheckedCourse& course) {
+  store.each_row("SELECT action, min(action_id) FROM operator_action GROUP BY action",
+                 [&](Statement& row) {
+                   const std::string action = row.text(0);
+                   if (std::ranges::find(operator_actions(), action, &ActionInfo::name) ==
+                       operator_actions().end()) {
+                     course.wrong.push_back(fmt::format("action {}: {} is no action of an operator",
+                                                        row.integer(1), quoted(action)));
+                   }
+                 });
+}
+}  // namespace
+
+CheckedCourse checked_course(Store& store, const Protocol& protocol) {
+  CheckedCourse course;
+  check_trials(store, protocol, course);
+  check_states(store, course);
+  check_actions(store, course);
+  return course;
+}
+}  // namespace tapstudy::runner

@@ -1,0 +1,104 @@
+#include "runner/studies/study_verification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+
+#include "core/error.hpp"
+#include "protocols/protocol.hpp"
+#include "results/journal/journal.hpp"
+#include "results/store/row_rules.hpp"
+#include "results/store_error.hpp"
+#include "runner/session/engine/stored_names.hpp"
+#include "runner/studies/stored_course.hpp"
+#include "runner/studies/stored_study.hpp"
+namespace tapstudy::runner {
+namespace {
+using Lines = std::vector<std::string>;
+
+constexpr const char* unfinished_beginning =
+    "is the unfinished beginning of a study, without a session (its program was ended before the "
+    "first one; another with the same --out goes on with it)";
+
+// Without a protocol it is a rule that knows no block.
+results::TaskRule rule_of(const std::optional<protocols::Protocol>& protocol) {
+  const auto block_of = [&protocol](const results::TrialRow& trial) -> const protocols::Block* {
+    if (!protocol) {
+      return nullptr;
+    }
+    const auto found = std::ranges::find(protocol->blocks, trial.block, &protocols::Block::name);
+    return found == protocol->blocks.end() ? nullptr : &*found;
+  };
+  return {[block_of](const results::TrialRow& trial) { return block_of(trial) != nullptr; },
+          [block_of](const results::TrialRow& trial,
+                     const std::vector<results::AlternativeRow>& alternatives,
+                     const std::string& response) {
+            const protocols::Block& block = *block_of(trial);
+            return block.task->is_correct(stored_trial(trial, alternatives, block), block,
+                                          response);
+          }};
+}
+
+std::optional<protocols::Protocol> protocol_of(const results::StudyRow& study, Lines& remarks) {
+  try {
+    return stored_protocol(study);
+  } catch (const core::InvalidInput&) {
+    remarks.emplace_back("the study's protocol cannot be read by this version");
+    return std::nullopt;
+  }
+}
+
+void check_by_protocol(results::Store& store, const protocols::Protocol& protocol,
+                       Verification& found) {
+  std::ranges::move(unknown_names(store, protocol), std::back_inserter(found.broken));
+  CheckedCourse course = checked_course(store, protocol);
+  std::ranges::move(course.wrong, std::back_inserter(found.broken));
+  std::ranges::move(course.open_sessions, std::back_inserter(found.remarks));
+  if (course.unknown_orders > 0) {
+    found.remarks.push_back(
+        fmt::format("this version would draw the orders of {} sessions otherwise: their trials are "
+                    "not held against them",
+                    course.unknown_orders));
+  }
+}
+
+// As multisets: a line that stands twice is missing once where it stands once.
+void compare(Lines stored, Lines journalled, Verification& found) {
+  std::ranges::sort(stored);
+  std::ranges::sort(journalled);
+  std::ranges::set_difference(stored, journalled, std::back_inserter(found.not_in_journal));
+  std::ranges::set_difference(journalled, stored, std::back_inserter(found.not_in_database));
+}
+}  // namespace
+
+bool Verification::is_sound() const {
+  return recomputed.differences.empty() && broken.empty() && study_and_sessions.empty() &&
+         not_in_journal.empty() && not_in_database.empty() && journal_fault.empty();
+}
+
+Verification verification_of(results::Store& store, const std::string& directory) {
+  Verification found;
+  const results::StudyRow study = store.study();
+  const std::optional<protocols::Protocol> protocol = protocol_of(study, found.remarks);
+  found.recomputed = results::recompute(store, rule_of(protocol));
+  found.broken = results::broken_rules(store);
+  if (protocol) {
+    check_by_protocol(store, *protocol, found);
+  }
+  found.trials = std::ssize(store.trials());
+  const results::JournalEntries in_store = store.entries_for_journal();
+  found.answers = std::ssize(in_store.answers);
+  try {
+    const results::JournalContent journal = results::read_journal(directory);
+    found.journalled_answers = std::ssize(journal.entries.answers);
+    found.study_and_sessions =
+        results::differing_study_and_sessions(study, store.sessions(), journal);
+    compare(results::to_lines(in_store), results::to_lines(journal.entries), found);
+  } catch (const results::StoreError& error) {
+    found.journal_fault = store.sessions().empty() ? unfinished_beginning : error.what();
+  }
+  return found;
+}
+}  // namespace tapstudy::runner

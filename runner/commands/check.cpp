@@ -77,7 +77,7 @@ std::string kind_of_model(const core::ModelReport& report, bool is_beam) {
 
 void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
   std::string warnings;
-  fmt::print("\nmodels\n");
+  fmt::print("\nmodels\n{}", describe_noise(protocol));
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
     if (!stimulus.technique->needs_model()) {
       continue;

@@ -12,6 +12,7 @@
 #include "core/model/progress.hpp"
 #include "core/techniques/compensated.hpp"
 #include "core/techniques/technique.hpp"
+#include "protocols/surface/surface_noise.hpp"
 #include "runner/session/stimuli/stimulus_family.hpp"
 #include "runner/studies/counted.hpp"
 namespace tapstudy::runner {
@@ -235,6 +236,15 @@ void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& m
 namespace {
 constexpr double tolerated_error = 0.05;  // of a frequency
 }  // namespace
+
+std::string describe_noise(const protocols::Protocol& protocol) {
+  std::string lines;
+  for (const protocols::SurfaceSource& source : protocol.surfaces) {
+    const std::string noise = protocols::noise_of(source).describe();
+    lines += noise.empty() ? "" : fmt::format("  surface {}: {}\n", source.file, noise);
+  }
+  return lines;
+}
 
 std::string describe_errors(const core::FrequencyErrors& errors) {
   if (!errors.not_estimated.empty()) {

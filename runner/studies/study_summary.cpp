@@ -23,6 +23,7 @@
 #include "protocols/schedule/catch_trials.hpp"
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
+#include "protocols/surface/surface_noise.hpp"
 #include "results/store/study_queries.hpp"
 #include "runner/session/engine/practice.hpp"
 #include "runner/studies/methods_section.hpp"
@@ -295,11 +296,20 @@ std::vector<std::pair<std::string, std::string>> provenance(
         fmt::format("{}, {} Hz, {}", session.device, session.rate_hz, session.scheduler));
     seeds.push_back(fmt::format("{} {}", session.participant_id, session.seed));
   }
-  return {{"protocol", study.protocol_file},
-          {"protocol SHA-256", study.protocol_sha256},
-          {"tapstudy", fmt::format("{}", fmt::join(programs, "; "))},
-          {"device", fmt::format("{}", fmt::join(devices, "; "))},
-          {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
+  std::vector<std::pair<std::string, std::string>> all{
+      {"protocol", study.protocol_file},
+      {"protocol SHA-256", study.protocol_sha256},
+      {"tapstudy", fmt::format("{}", fmt::join(programs, "; "))},
+      {"device", fmt::format("{}", fmt::join(devices, "; "))},
+      {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
+  for (const results::SurfaceRow& surface : study.surfaces) {
+    const protocols::SurfaceNoise noise =
+        protocols::noise_of({surface.file, surface.bytes, surface.sha256});
+    if (!noise.describe().empty()) {
+      all.emplace_back("surface " + surface.file, noise.describe());
+    }
+  }
+  return all;
 }
 
 void check_same_protocol(const std::vector<StudyStore>& stores) {

@@ -95,8 +95,13 @@ AnswerInView in_view(const results::JournalledAnswer& answer, const protocols::P
 
 void amend(const AmendOptions& options) {
   const OperatorCommand command = amendment_in(options.action);
-  const results::StudyRow study = results::Store::open_existing(options.directory).study();
-  const protocols::Protocol protocol = stored_protocol(study);
+  results::StudyRow study;
+  protocols::Protocol protocol;
+  {
+    results::Store existing = results::Store::open_existing(options.directory);
+    study = existing.study();
+    protocol = stored_protocol(existing);
+  }
   const ParticipantLock lock{options.directory, options.participant};
   results::Store store = results::Store::open_or_create(options.directory, study);
   const results::SessionRow session = session_of(options, command.trial, store);

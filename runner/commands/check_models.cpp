@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/element_order.hpp"
 #include "core/model/progress.hpp"
 #include "core/techniques/compensated.hpp"
 #include "core/techniques/technique.hpp"
@@ -244,6 +245,18 @@ std::string describe_noise(const protocols::Protocol& protocol) {
     lines += noise.empty() ? "" : fmt::format("  surface {}: {}\n", source.file, noise);
   }
   return lines;
+}
+
+std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
+                             const core::ModelReport& report) {
+  if (stimulus.plate->mesh.order != core::chosen_order || report.order != 1) {
+    return {};
+  }
+  return fmt::format(
+      "  warning: {} has linear elements, as quadratic ones would have more than {} unknowns: its "
+      "frequencies may be far too high (fewer elements: a surface of fewer triangles, mesh: "
+      "radius_edge_ratio: 2; or mesh: order: 2, if time and memory allow)\n",
+      stimulus.name, core::max_chosen_dofs);
 }
 
 std::string describe_errors(const core::FrequencyErrors& errors) {

@@ -174,7 +174,8 @@ void print_table(const protocols::PresentedStimulus& stimulus, const core::Plate
   if (!is_beam) {
     print_completeness(report, spec.band_limit_hz);
     fmt::print("  {}\n", describe_errors(errors));
-    fmt::print("{}", warning_of_errors(stimulus.name, errors));
+    fmt::print("{}{}", warning_of_order(stimulus, report),
+               warning_of_errors(stimulus.name, errors));
   }
 }
 

@@ -31,8 +31,10 @@ std::set<std::pair<std::string, std::string>> items_without_text(
 
 void redact(const RedactOptions& options) {
   core::check_is_new(options.out);
-  const protocols::Protocol protocol =
-      stored_protocol(results::Store::open_existing(options.directory).study());
+  const protocols::Protocol protocol = [&] {
+    results::Store store = results::Store::open_existing(options.directory);
+    return stored_protocol(store);
+  }();
   core::write_new_directory(options.out, [&](const std::string& unfinished) {
     results::write_redacted_copy(options.directory, unfinished, items_without_text(protocol));
   });

@@ -177,7 +177,7 @@ std::vector<std::string> without_added_sentences(const ordered_json& published,
   });
   std::vector<std::string> added;
   for (const std::string& sentence :
-       rendered_by_earlier_versions(stored_protocol(store.study()), sessions)) {
+       rendered_by_earlier_versions(stored_protocol(store), sessions)) {
     if (std::ranges::find(said, ordered_json(sentence)) == said.end() &&
         std::erase(summary.deviations, sentence) > 0) {
       added.push_back(sentence);
@@ -264,10 +264,10 @@ int print_missing(const std::set<std::string>& lines, const std::set<std::string
 }
 
 // A protocol that this version cannot read yields a rule that knows no block.
-results::TaskRule rule_of(const results::StudyRow& study) {
+results::TaskRule rule_of(results::Store& store) {
   auto protocol = std::make_shared<protocols::Protocol>();
   try {
-    *protocol = stored_protocol(study);
+    *protocol = stored_protocol(store);
   } catch (const core::InvalidInput&) {
     warn("the study's protocol cannot be read by this version");
   }
@@ -353,7 +353,7 @@ std::string print_published(const PublishedReport& report) {
 
 void verify(const VerifyOptions& options) {
   results::Store store = results::Store::open_existing(options.directory);
-  const results::Recomputation recomputed = results::recompute(store, rule_of(store.study()));
+  const results::Recomputation recomputed = results::recompute(store, rule_of(store));
   const results::JournalEntries in_store = store.entries_for_journal();
   fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", store.trials().size(),
              in_store.answers.size(), recomputed.ticks);

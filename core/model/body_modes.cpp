@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/model/beam.hpp"
 #include "core/model/discrete_body.hpp"
+#include "core/model/element_order.hpp"
 #include "core/model/error_estimate.hpp"
 #include "core/model/joints/coupled_bodies.hpp"
 #include "core/model/joints/joints.hpp"
@@ -70,7 +71,6 @@ namespace {
 constexpr double tets_of_first_round = 200.0;
 constexpr double finer = 0.25;  // ratio of element volume between refinement steps
 constexpr std::size_t max_rounds = 8;
-constexpr double max_refined_dofs = 3e5;  // about 3 GB and a minute
 
 void add(const ModelCost& more, ModelCost& to) {
   to.mesh_s += more.mesh_s;
@@ -200,11 +200,11 @@ std::string nonconverged_region(const std::vector<double>& before_m2,
       fmt::format("mesh: the frequencies have not settled to {} % within {:.0g} tetrahedra, {:.0g} "
                   "unknowns and "
                   "{} rounds{}{} (ask for less, or leave accuracy out and give a size)",
-                  100.0 * accuracy, max_tets, max_refined_dofs, max_rounds, history,
-                  unsettled.empty() ? "" : "; " + unsettled)};
+                  100.0 * accuracy, max_tets, static_cast<double>(max_chosen_dofs), max_rounds,
+                  history, unsettled.empty() ? "" : "; " + unsettled)};
 }
 
-SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
+SolvedBody refine(BodySpec body, const ProgressHook& progress) {
   const double accuracy = body.mesh.accuracy.value();
   check_can_settle(body.fixations);
   MeshSize size = body.mesh.size;
@@ -216,10 +216,11 @@ SolvedBody refine(const BodySpec& body, const ProgressHook& progress) {
   std::vector<double> held_before_m2;
   std::string unsettled;
   int dofs = 0;
-  while (rounds.size() < max_rounds && dofs <= finer * max_refined_dofs &&
+  while (rounds.size() < max_rounds && dofs <= finer * max_chosen_dofs &&
          (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
     size.max_tet_volume_m3 = volume_m3;
     SolvedBody solved = solve_once(body, size, Estimate::wanted, progress);
+    body.mesh.order = solved.modes.report.order;  // rounds of one order, so that they compare
     const Eigen::ArrayXd after = tracked_frequencies(body, size, solved);
     dofs = solved.modes.report.dofs;
     add(solved.modes.report.cost, cost);

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
+#include "core/model/element_order.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/progress.hpp"
 namespace tapstudy::core {
@@ -13,8 +16,11 @@ DiscreteBody discretised(const Plate& plate, const Material& material, const Mes
   std::vector<Fixation> all_regions = plate.fixations;
   all_regions.insert(all_regions.end(), regions.begin(), regions.end());
   body.mesh = mesh_shape(plate.shape, size, points_to_mesh(all_regions, plate.shape));
-  if (plate.mesh.order == 2) {
-    body.mesh = to_quadratic(body.mesh);
+  if (plate.mesh.order != 1) {
+    TetMesh quadratic = to_quadratic(body.mesh);
+    if (plate.mesh.order == 2 || 3 * quadratic.nodes_m.rows() <= max_chosen_dofs) {
+      body.mesh = std::move(quadratic);
+    }
   }
   body.cost.mesh_s = watch.lap_s();
   tell(progress, fmt::format("assembling {} tetrahedra", body.mesh.tets.rows()));

@@ -10,7 +10,7 @@
 namespace tapstudy::core {
 struct Meshing {
   MeshSize size;
-  int order{1};  // of the elements: 1 (T4) or 2 (T10)
+  int order{1};  // of the elements: 1 (T4), 2 (T10), or chosen_order (element_order.hpp)
   // Refine until no frequency in the band changes by more than this fraction; unset: no refinement.
   std::optional<double> accuracy{};
 };

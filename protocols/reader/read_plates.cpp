@@ -108,10 +108,14 @@ core::Fixation read_fixation(MapReader& reader, bool is_box) {
   return fixation;
 }
 
-core::Meshing read_mesh(MapReader& mesh) {
-  core::Meshing meshing;
-  meshing.order =
-      mesh.integer({"order", "element order: 1 as in the paper; 2 is far more accurate"}, 1, 2, 1);
+void read_mesh(MapReader& mesh, core::Meshing& meshing) {
+  if (mesh.has("order")) {
+    meshing.order = mesh.integer(
+        {"order", fmt::format("element order: 1 as in the paper, 2 is far more accurate; unset: 2, "
+                              "but 1 where that would take more than {} unknowns",
+                              core::max_chosen_dofs)},
+        1, 2);
+  }
   if (mesh.has("max_tet_volume_m3")) {
     meshing.size.max_tet_volume_m3 =
         mesh.number({"max_tet_volume_m3",
@@ -131,7 +135,6 @@ core::Meshing read_mesh(MapReader& mesh) {
                                     "this fraction; unset: no refinement"},
                                    {1e-5, 1.0, true, false});
   }
-  return meshing;
 }
 
 // Read once, however many plates have it: what is modelled is what is stored.
@@ -231,7 +234,8 @@ void read_own_points(MapReader& reader, const Protocol& protocol, Plate& plate) 
 }
 }  // namespace
 
-void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
+void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file,
+                 const EarlierDefaults& defaults) {
   top.each(
       {"plates", "named bodies, each a box or a closed surface, with mesh and boundary conditions"},
       Presence::required, [&](const std::string& name, MapReader& reader) {
@@ -242,8 +246,9 @@ void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file) 
                                    {"size_m", "edge lengths of a box along x, y and z (thickness)"},
                                    3, allowed::edge_m)}}
                              : read_surface_shape(reader, read_file, protocol);
+        plate.mesh.order = defaults.element_order;
         reader.map({"mesh", "settings of the tetrahedral mesh"}, Presence::optional,
-                   [&](MapReader& mesh) { plate.mesh = read_mesh(mesh); });
+                   [&](MapReader& mesh) { read_mesh(mesh, plate.mesh); });
         reader.list({"fixations", "regions that are held; an empty list: none"}, Presence::required,
                     [&](MapReader& fixation) {
                       plate.fixations.push_back(read_fixation(fixation, is_box));

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "protocols/reader/earlier_defaults.hpp"
 #include "protocols/reader/read_sections.hpp"
 #include "protocols/yaml/text_file.hpp"
 namespace tapstudy::protocols {
@@ -19,7 +20,8 @@ ReadFile beside(const std::string& file) {
   };
 }
 
-void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
+void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file,
+                const EarlierDefaults& defaults) {
   top.check_format("tapstudy/1");
   protocol.title = top.translated({"title",
                                    "of the study, as participants' pages and reports show it: it "
@@ -42,7 +44,7 @@ void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
       [&](const core::Placement& placement) { protocol.placement = placement; });
   read_materials(top, protocol);
   read_points(top, protocol);
-  read_plates(top, protocol, read_file);
+  read_plates(top, protocol, read_file, defaults);
   read_recordings(top, protocol);
   read_contacts(top, protocol);
   read_stimuli(top, protocol);
@@ -55,12 +57,13 @@ void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file) {
   read_simulation(top, protocol);
 }
 
-Protocol parse(const StudyText& study, const ReadFile& read_file, Problems& problems) {
+Protocol parse(const StudyText& study, const ReadFile& read_file, const EarlierDefaults& defaults,
+               Problems& problems) {
   Protocol protocol;
   protocol.text = study.text;
   protocol.translations.language = study.language;
   MapReader top = MapReader::whole_file(study.text, study.file, problems, &protocol.translations);
-  read_whole(top, protocol, read_file);
+  read_whole(top, protocol, read_file, defaults);
   top.finish();
   return protocol;
 }
@@ -71,7 +74,7 @@ std::string protocol_schema() {
       "protocol", "A user study of tapped virtual plates. SI units, spelled in the keys.",
       [](MapReader& top) {
         Protocol protocol;
-        read_whole(top, protocol, {});
+        read_whole(top, protocol, {}, {});
       });
 }
 
@@ -80,19 +83,29 @@ Protocol parse_protocol(const std::string& text, const std::string& file) {
 }
 
 Protocol parse_protocol(const StudyText& study, const ReadFile& read_file) {
+  return parse_protocol(study, read_file, {});
+}
+
+Protocol parse_protocol(const StudyText& study, const ReadFile& read_file,
+                        const EarlierDefaults& defaults) {
   Problems problems{study.file};
-  Protocol protocol = parse(study, read_file, problems);
+  Protocol protocol = parse(study, read_file, defaults, problems);
   problems.throw_if_any();
   return protocol;
 }
 
 Protocol read_protocol(const std::string& file, const std::string& language) {
-  return parse_protocol({contents_of(file), file, language}, beside(file));
+  return read_protocol(file, language, {});
+}
+
+Protocol read_protocol(const std::string& file, const std::string& language,
+                       const EarlierDefaults& defaults) {
+  return parse_protocol({contents_of(file), file, language}, beside(file), defaults);
 }
 
 std::set<std::string> keys_asked_for(const std::string& text, const std::string& file) {
   Problems problems{file};
-  parse({text, file}, beside(file), problems);
+  parse({text, file}, beside(file), {}, problems);
   return problems.asked();
 }
 }  // namespace tapstudy::protocols

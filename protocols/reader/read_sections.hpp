@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "protocols/protocol.hpp"
+#include "protocols/reader/earlier_defaults.hpp"
 #include "protocols/surface/surface_file.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
 namespace tapstudy::protocols {
@@ -13,7 +14,8 @@ void read_placement(MapReader& top, const Key& key, MapReader::Presence presence
 void read_materials(MapReader& top, Protocol& protocol);
 void read_points(MapReader& top, Protocol& protocol);
 // read_file: the bytes of a surface, by the name that the study gives it.
-void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file);
+void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file,
+                 const EarlierDefaults& defaults);
 void read_recordings(MapReader& top, Protocol& protocol);
 void read_contacts(MapReader& top, Protocol& protocol);
 // Of a stimulus whose other keys are read.

@@ -30,7 +30,6 @@ constexpr double no_area = 1e-12;  // of a triangle, as a fraction of its longes
 constexpr double flat_cap = 1e-5;  // height over longest side, as rounding to float gives
 constexpr double flat_cap_of_side = 1e-2;  // height over shortest side
 constexpr double no_volume = 1e-9;         // as a fraction of the bounding cube's
-constexpr Eigen::Index max_triangles = 200000;
 
 std::string place(const TriangleSurface& surface, int point) {
   const auto p = surface.points_m.row(point);
@@ -38,10 +37,6 @@ std::string place(const TriangleSurface& surface, int point) {
 }
 
 void check_size(const TriangleSurface& surface) {
-  if (surface.triangles.rows() > max_triangles) {
-    throw InvalidInput{
-        fmt::format("surface: {} triangles (at most {})", surface.triangles.rows(), max_triangles)};
-  }
   if (!surface.points_m.allFinite()) {
     throw InvalidInput{"surface: a coordinate is not a finite number"};
   }

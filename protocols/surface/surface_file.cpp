@@ -3,6 +3,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/OFF.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -20,13 +21,15 @@
 #include "core/process/bounded_child.hpp"
 #include "core/text/plain_text.hpp"
 #include "protocols/surface/cut_polygon.hpp"
+#include "protocols/surface/join_points.hpp"
+#include "protocols/surface/surface_noise.hpp"
 #include "protocols/surface/surface_soup.hpp"
 #include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
 namespace {
 using core::Vec3;
-using Triangle = std::array<int, 3>;
 constexpr double max_coordinate_m = 1e6;
+constexpr std::size_t max_triangles = 200'000;
 
 std::string ending_of(const std::string& file) {
   std::string ending = std::filesystem::path{file}.extension().string();
@@ -227,45 +230,113 @@ std::vector<std::array<std::size_t, 3>> triangles_of(const std::vector<std::size
   return triangles;
 }
 
-// Coincident points are one. Points in the order of their coordinates, each triangle from its first
-// corner, triangles in the order of these: meshers build on the order, which is that of the writing
-// program, so that without it the same surface in two files is two bodies.
-core::TriangleSurface in_canonical_order(const std::vector<std::array<std::size_t, 3>>& triangles,
-                                         const SurfaceSoup& soup) {
+// The points that triangles use, each once, in the order of their coordinates; and of each of the
+// soup's points its number among them.
+struct DistinctPoints {
+  std::vector<Vec3> points;
+  std::vector<std::size_t> number;
+};
+
+DistinctPoints distinct_points(const std::vector<std::array<std::size_t, 3>>& triangles,
+                               const SurfaceSoup& soup) {
   std::vector<std::size_t> used;
   for (const auto& triangle : triangles) {
     used.insert(used.end(), triangle.begin(), triangle.end());
   }
-  const auto place = [&](std::size_t point) { return soup.points[point]; };
-  std::ranges::sort(used, comes_before, place);
-  std::vector<int> number(soup.points.size());
-  std::vector<std::size_t> distinct;
+  std::ranges::sort(used, comes_before, [&](std::size_t point) { return soup.points[point]; });
+  DistinctPoints distinct{{}, std::vector<std::size_t>(soup.points.size())};
   for (const std::size_t point : used) {
-    if (distinct.empty() || place(distinct.back()) != place(point)) {
-      distinct.push_back(point);
+    if (distinct.points.empty() || distinct.points.back() != soup.points[point]) {
+      distinct.points.push_back(soup.points[point]);
     }
-    number[point] = static_cast<int>(distinct.size()) - 1;
+    distinct.number[point] = distinct.points.size() - 1;
   }
-  std::vector<Triangle> numbered;
+  return distinct;
+}
+
+SurfaceNoise noise_among(const std::vector<Vec3>& points, const std::vector<std::size_t>& places) {
+  SurfaceNoise noise;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    noise.points += places[i] == i ? 0 : 1;
+    noise.farthest = std::max(noise.farthest, (points[places[i]] - points[i]).norm());
+  }
+  noise.farthest /= noise.points > 0 ? size_of(points) : 1.0;
+  return noise;
+}
+
+// Of triangles numbered by points of which some are used.
+core::TriangleSurface of_used_points(const std::vector<Vec3>& points,
+                                     std::vector<std::array<std::size_t, 3>> triangles) {
+  std::vector<int> number(points.size(), 0);
   for (const auto& triangle : triangles) {
-    Triangle corners{};
+    for (const std::size_t corner : triangle) {
+      number[corner] = 1;
+    }
+  }
+  core::TriangleSurface surface;
+  surface.points_m.resize(std::count(number.begin(), number.end(), 1), 3);
+  int used = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (number[i] == 1) {
+      surface.points_m.row(used) = points[i].transpose();
+      number[i] = used++;
+    }
+  }
+  surface.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      surface.triangles(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+          number[triangles[i][k]];
+    }
+  }
+  return surface;
+}
+
+struct SurfaceAndNoise {
+  core::TriangleSurface surface;
+  SurfaceNoise noise;
+};
+
+// Points in the order of their coordinates, each triangle from its first corner, triangles in the
+// order of these: meshers build on the order, which is that of the writing program, so that without
+// it the same surface in two files is two bodies.
+SurfaceAndNoise in_canonical_order(const std::vector<std::array<std::size_t, 3>>& triangles,
+                                   const SurfaceSoup& soup) {
+  const DistinctPoints distinct = distinct_points(triangles, soup);
+  const std::vector<std::size_t> places = without_noise(distinct.points);
+  SurfaceAndNoise read{{}, noise_among(distinct.points, places)};
+  std::vector<std::array<std::size_t, 3>> numbered;
+  for (const auto& triangle : triangles) {
+    std::array<std::size_t, 3> corners{};
     std::ranges::transform(triangle, corners.begin(),
-                           [&](std::size_t point) { return number[point]; });
+                           [&](std::size_t point) { return places[distinct.number[point]]; });
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
+      ++read.noise.without_area;
+      continue;
+    }
     std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
     numbered.push_back(corners);
   }
   std::ranges::sort(numbered);
-  core::TriangleSurface surface;
-  surface.points_m.resize(static_cast<Eigen::Index>(distinct.size()), 3);
-  for (std::size_t i = 0; i < distinct.size(); ++i) {
-    surface.points_m.row(static_cast<Eigen::Index>(i)) = place(distinct[i]).transpose();
+  read.surface = of_used_points(distinct.points, std::move(numbered));
+  return read;
+}
+SurfaceAndNoise triangulated(SurfaceSoup soup, const std::string& file, double metres_per_unit) {
+  scale(soup, file, metres_per_unit);
+  std::vector<std::array<std::size_t, 3>> triangles;
+  for (const auto& polygon : soup.polygons) {
+    const auto cut = triangles_of(from_first_corner(polygon, soup), soup, file);
+    triangles.insert(triangles.end(), cut.begin(), cut.end());
   }
-  surface.triangles.resize(static_cast<Eigen::Index>(numbered.size()), 3);
-  for (std::size_t i = 0; i < numbered.size(); ++i) {
-    surface.triangles.row(static_cast<Eigen::Index>(i)) =
-        Eigen::Map<const Eigen::RowVector3i>{numbered[i].data()};
+  if (triangles.size() > max_triangles) {
+    throw core::InvalidInput{
+        fmt::format("{}: {} triangles (at most {})", file, triangles.size(), max_triangles)};
   }
-  return surface;
+  SurfaceAndNoise read = in_canonical_order(triangles, soup);
+  if (read.surface.triangles.rows() == 0) {
+    throw core::InvalidInput{file + ": no triangle of it has an area"};
+  }
+  return read;
 }
 }  // namespace
 
@@ -274,14 +345,33 @@ SurfaceSource surface_source(std::string file, std::string bytes) {
   return {std::move(file), std::move(bytes), std::move(sha256)};
 }
 
-core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
-  SurfaceSoup soup = soup_of(source);
-  scale(soup, source.file, metres_per_unit);
-  std::vector<std::array<std::size_t, 3>> triangles;
-  for (const auto& polygon : soup.polygons) {
-    const auto cut = triangles_of(from_first_corner(polygon, soup), soup, source.file);
-    triangles.insert(triangles.end(), cut.begin(), cut.end());
+std::string SurfaceNoise::describe() const {
+  std::vector<std::string> parts;
+  if (points > 0) {
+    parts.push_back(fmt::format(
+        "{} of its points differ from others by noise, at most {:.2g} of its size, and are joined "
+        "to them",
+        points, farthest));
   }
-  return in_canonical_order(triangles, soup);
+  if (without_area > 0) {
+    parts.push_back(fmt::format(
+        "{} of its triangles have two corners in one point and are left out", without_area));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
+  return triangulated(soup_of(source), source.file, metres_per_unit).surface;
+}
+
+// In a unit of the surface's own, as its coordinates may be beyond all sizes in metres.
+SurfaceNoise noise_of(const SurfaceSource& source) {
+  SurfaceSoup soup = soup_of(source);
+  double farthest = 0.0;
+  for (const Vec3& point : soup.points) {
+    farthest = std::max(farthest, point.cwiseAbs().maxCoeff());
+  }
+  const double unit = farthest > 0.0 ? std::pow(10.0, -std::ceil(std::log10(farthest))) : 1.0;
+  return triangulated(std::move(soup), source.file, unit).noise;
 }
 }  // namespace tapstudy::protocols

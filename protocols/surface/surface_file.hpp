@@ -19,10 +19,10 @@ inline constexpr std::size_t max_surface_bytes = 200'000'000;
 SurfaceSource surface_source(std::string file, std::string bytes);
 
 // Reads the triangles of an STL (ASCII or binary), PLY, OFF or OBJ file, chosen by file extension;
-// polygons are triangulated, concave ones included, and coincident points are one. Coordinates are
-// taken as decimal numbers and multiplied by metres_per_unit as such; points and triangles come in
-// the order of their coordinates: the same surface gives the same numbers whatever its format, its
-// unit and its order. Throws InvalidInput for other formats, with what converts them, for a file
-// that is not of its format, and if a face cannot be triangulated.
+// polygons are triangulated, concave ones included, points as near as noise are one. Coordinates
+// are taken as decimal numbers and multiplied by metres_per_unit as such; points and triangles come
+// in the order of their coordinates: the same surface gives the same numbers whatever its format,
+// its unit and its order. Throws InvalidInput for other formats, with what converts them, for a
+// file that is not of its format, and if a face cannot be triangulated.
 core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit);
 }  // namespace tapstudy::protocols

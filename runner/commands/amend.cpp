@@ -99,7 +99,7 @@ void amend(const AmendOptions& options) {
   const results::StudyRow study = results::Store::open_existing(options.directory).study();
   const ParticipantLock lock{options.directory, options.participant};
   results::Store store = results::Store::open_or_create(options.directory, study);
-  const protocols::Protocol protocol = stored_protocol(study);
+  const protocols::Protocol protocol = stored_protocol(store);
   check_names(store, protocol);
   const results::SessionRow session = session_of(options, command.trial, store);
   results::Recorder recorder{store};

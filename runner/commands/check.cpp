@@ -77,7 +77,7 @@ std::string kind_of_model(const core::ModelReport& report, bool is_beam) {
 
 void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
   std::string warnings;
-  fmt::print("\nmodels\n");
+  fmt::print("\nmodels\n{}", describe_noise(protocol));
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
     if (!stimulus.technique->needs_model()) {
       continue;
@@ -103,7 +103,7 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
             "    modes that move less than 1 % of the strongest at every tapping point: {}\n",
             unfelt);
       }
-      warnings += warning_of_errors(stimulus.name, errors);
+      warnings += warning_of_order(own, report) + warning_of_errors(stimulus.name, errors);
     }
   }
   fmt::print("{}", warnings);

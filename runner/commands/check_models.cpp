@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "core/model/element_order.hpp"
 #include "core/model/progress.hpp"
 #include "core/techniques/compensated.hpp"
 #include "core/techniques/technique.hpp"
+#include "protocols/surface/surface_noise.hpp"
 #include "runner/session/stimuli/stimulus_family.hpp"
 #include "runner/studies/counted.hpp"
 namespace tapstudy::runner {
@@ -235,6 +237,27 @@ void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& m
 namespace {
 constexpr double tolerated_error = 0.05;  // of a frequency
 }  // namespace
+
+std::string describe_noise(const protocols::Protocol& protocol) {
+  std::string lines;
+  for (const protocols::SurfaceSource& source : protocol.surfaces) {
+    const std::string noise = protocols::noise_of(source).describe();
+    lines += noise.empty() ? "" : fmt::format("  surface {}: {}\n", source.file, noise);
+  }
+  return lines;
+}
+
+std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
+                             const core::ModelReport& report) {
+  if (stimulus.plate->mesh.order != core::chosen_order || report.order != 1) {
+    return {};
+  }
+  return fmt::format(
+      "  warning: {} has linear elements, as quadratic ones would have more than {} unknowns: its "
+      "frequencies may be far too high (fewer elements: a surface of fewer triangles, mesh: "
+      "radius_edge_ratio: 2; or mesh: order: 2, if time and memory allow)\n",
+      stimulus.name, core::max_chosen_dofs);
+}
 
 std::string describe_errors(const core::FrequencyErrors& errors) {
   if (!errors.not_estimated.empty()) {

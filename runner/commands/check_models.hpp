@@ -26,6 +26,12 @@ void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& mod
 void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& models,
                             const protocols::Rig& rig);
 
+// A line for each surface file of the protocol that has something in excess of its body.
+std::string describe_noise(const protocols::Protocol& protocol);
+// Where elements are linear because quadratic ones were too many: a warning with its cure; else
+// empty.
+std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
+                             const core::ModelReport& report);
 // One line about the discretisation error of a model's frequencies.
 std::string describe_errors(const core::FrequencyErrors& errors);
 // Beyond 5 %, or where modes are missing, or nothing is known: a warning with its cure; else empty.

@@ -78,7 +78,7 @@ std::vector<results::FormText> form_texts(const protocols::Protocol& protocol) {
 
 results::StudyExport study_export(results::Store& store, bool has_tables) {
   const results::StudyRow study = store.study();
-  const protocols::Protocol protocol = stored_protocol(study);
+  const protocols::Protocol protocol = stored_protocol(store);
   check_names(store, protocol);
   StimulusTables stimuli = stimulus_tables(protocol, user_model_cache());
   if (has_tables && !stimuli.without_model.empty()) {

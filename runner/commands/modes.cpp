@@ -10,6 +10,7 @@
 #include "core/files/output_files.hpp"
 #include "core/model/vtu_file.hpp"
 #include "protocols/reader/read_protocol.hpp"
+#include "protocols/surface/surface_noise.hpp"
 #include "runner/commands/check_models.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/commands/shared_options.hpp"
@@ -49,8 +50,20 @@ void add_errors(const core::FrequencyErrors& errors, nlohmann::ordered_json& jso
   }
 }
 
-void print_json(const protocols::PresentedStimulus& stimulus, const core::PlateModel& plate,
-                const core::PlateSpec& spec) {
+void add_noise(const protocols::Protocol& protocol, nlohmann::ordered_json& json) {
+  for (const protocols::SurfaceSource& source : protocol.surfaces) {
+    const protocols::SurfaceNoise noise = protocols::noise_of(source);
+    if (!noise.describe().empty()) {
+      json["surface_noise"].push_back({{"file", source.file},
+                                       {"points_joined", noise.points},
+                                       {"farthest_share_of_size", noise.farthest},
+                                       {"triangles_without_area", noise.without_area}});
+    }
+  }
+}
+
+void print_json(const protocols::Protocol& protocol, const protocols::PresentedStimulus& stimulus,
+                const core::PlateModel& plate, const core::PlateSpec& spec) {
   const core::ModelReport& report = plate.body.modes.report;
   nlohmann::ordered_json json{{"schema_version", 1}, {"stimulus", stimulus.name}};
   if (!stimulus.values.empty()) {
@@ -71,6 +84,7 @@ void print_json(const protocols::PresentedStimulus& stimulus, const core::PlateM
     json["alpha_per_s"] = plate.modal.damping->alpha_per_s;
     json["beta_s"] = plate.modal.damping->beta_s;
   }
+  add_noise(protocol, json);
   json["element_order"] = report.order;
   json["nodes"] = report.nodes;
   json["elements"] = report.tets;
@@ -160,7 +174,8 @@ void print_table(const protocols::PresentedStimulus& stimulus, const core::Plate
   if (!is_beam) {
     print_completeness(report, spec.band_limit_hz);
     fmt::print("  {}\n", describe_errors(errors));
-    fmt::print("{}", warning_of_errors(stimulus.name, errors));
+    fmt::print("{}{}", warning_of_order(stimulus, report),
+               warning_of_errors(stimulus.name, errors));
   }
 }
 
@@ -216,8 +231,9 @@ void run_modes(const ModesOptions& options) {
     draw_modes(options, spec.shape, plate.modal);
   }
   if (options.wants_json) {
-    print_json(stimulus, plate, spec);
+    print_json(protocol, stimulus, plate, spec);
   } else {
+    fmt::print("{}", describe_noise(protocol));
     print_table(stimulus, spec, plate);
   }
 }

@@ -33,7 +33,7 @@ std::set<std::pair<std::string, std::string>> items_without_text(
 void redact(const RedactOptions& options) {
   core::check_is_new(options.out);
   results::Store store = results::Store::open_existing(options.directory);
-  const protocols::Protocol protocol = stored_protocol(store.study());
+  const protocols::Protocol protocol = stored_protocol(store);
   check_names(store, protocol);
   core::write_new_directory(options.out, [&](const std::string& unfinished) {
     results::write_redacted_copy(options.directory, unfinished, items_without_text(protocol));

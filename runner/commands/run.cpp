@@ -4,13 +4,13 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "protocols/reader/read_protocol.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/commands/shared_options.hpp"
 #include "runner/console/console_api.hpp"
 #include "runner/live_session/live_session.hpp"
 #include "runner/session/devices/rigs.hpp"
+#include "runner/studies/stored_study.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/typed_input.hpp"
 namespace tapstudy::runner {
@@ -114,7 +114,8 @@ std::string language_of(const RunOptions& options) {
 
 void run(RunOptions options) {
   options.language = language_of(options);
-  protocols::Protocol protocol = protocols::read_protocol(options.protocol, options.language);
+  protocols::Protocol protocol =
+      protocol_to_go_on_with(options.protocol, options.language, options.directory);
   warn_of_language(protocol, options);
   const protocols::Rig rig = options.rig.empty() ? simulated_rig() : read_rig(options.rig);
   protocol.rendering.device_response = rig.vibration_response;

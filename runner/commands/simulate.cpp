@@ -3,16 +3,17 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "protocols/reader/read_protocol.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/commands/shared_options.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/studies/simulated_study.hpp"
+#include "runner/studies/stored_study.hpp"
 #include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
 namespace {
 void run_simulate(SimulatedStudy study, const std::string& participants) {
-  const protocols::Protocol protocol = protocols::read_protocol(study.protocol_file);
+  const protocols::Protocol protocol =
+      protocol_to_go_on_with(study.protocol_file, {}, study.directory);
   check_has_blocks(protocol);
   study.participants = planned_participants(participants, protocol);
   check_trial_length(protocol);

@@ -175,7 +175,7 @@ std::vector<std::string> without_added_sentences(const ordered_json& published,
   });
   std::vector<std::string> added;
   for (const std::string& sentence :
-       rendered_by_earlier_versions(stored_protocol(store.study()), sessions)) {
+       rendered_by_earlier_versions(stored_protocol(store), sessions)) {
     if (std::ranges::find(said, ordered_json(sentence)) == said.end() &&
         std::erase(summary.deviations, sentence) > 0) {
       added.push_back(sentence);

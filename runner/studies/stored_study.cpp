@@ -3,23 +3,64 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/text/plain_text.hpp"
 #include "protocols/form.hpp"
-#include "protocols/reader/read_protocol.hpp"
+#include "results/store/program_versions.hpp"
 #include "results/store/study_queries.hpp"
 #include "runner/session/engine/between_trials.hpp"
 namespace tapstudy::runner {
-protocols::Protocol stored_protocol(const results::StudyRow& study) {
+bool is_before(const std::string& version, int major, int minor) {
+  const auto first_dot = version.find('.');
+  const auto second_dot = version.find('.', first_dot + 1);
+  if (first_dot == std::string::npos || second_dot == std::string::npos) {
+    return false;
+  }
+  const std::string_view text{version};
+  const auto of_major = core::number_in<int>(text.substr(0, first_dot));
+  const auto of_minor =
+      core::number_in<int>(text.substr(first_dot + 1, second_dot - first_dot - 1));
+  return of_major && of_minor && std::pair{*of_major, *of_minor} < std::pair{major, minor};
+}
+
+protocols::EarlierDefaults defaults_of(const std::set<std::string>& program_versions) {
+  protocols::EarlierDefaults defaults;
+  if (std::ranges::any_of(program_versions,
+                          [](const std::string& version) { return is_before(version, 0, 3); })) {
+    defaults.element_order = 1;
+  }
+  return defaults;
+}
+
+protocols::EarlierDefaults defaults_of(results::Store& store) {
+  std::set<std::string> versions;
+  for (const results::SessionRow& session : store.sessions()) {
+    versions.insert(session.program_version);
+  }
+  return defaults_of(versions);
+}
+
+protocols::Protocol stored_protocol(results::Store& store) {
+  const results::StudyRow study = store.study();
   return protocols::parse_protocol(
-      {study.protocol_text, study.protocol_file}, [&](const std::string& file) {
+      {study.protocol_text, study.protocol_file},
+      [&](const std::string& file) {
         const auto found = std::ranges::find(study.surfaces, file, &results::SurfaceRow::file);
         if (found == study.surfaces.end()) {
           throw core::InvalidInput{file + ": is not stored with the study"};
         }
         return found->bytes;
-      });
+      },
+      defaults_of(store));
+}
+
+protocols::Protocol protocol_to_go_on_with(const std::string& file, const std::string& language,
+                                           const std::string& directory) {
+  return protocols::read_protocol(file, language,
+                                  defaults_of(results::program_versions_in(directory)));
 }
 
 protocols::PlannedTrial stored_trial(const results::TrialRow& row,

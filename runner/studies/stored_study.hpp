@@ -6,6 +6,7 @@
 
 #include "analysis/report/study/questionnaires.hpp"
 #include "protocols/protocol.hpp"
+#include "protocols/reader/earlier_defaults.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "results/rows.hpp"
 #include "results/store/store.hpp"
@@ -16,9 +17,19 @@ struct StudyStore {
   results::Store* store;
 };
 
+// Whether a version of tapstudy, "0.2.0", is an earlier one; false of what is no version.
+bool is_before(const std::string& version, int major, int minor);
+// What a study of sessions run by these versions of tapstudy leaves out: begun before 0.3, it keeps
+// the linear elements of that time.
+protocols::EarlierDefaults defaults_of(const std::set<std::string>& program_versions);
+protocols::EarlierDefaults defaults_of(results::Store& store);
+
 // The protocol of a study, from its store alone: the files named by it may no longer exist. Throws
 // InvalidInput where it cannot be read.
-protocols::Protocol stored_protocol(const results::StudyRow& study);
+protocols::Protocol stored_protocol(results::Store& store);
+// The protocol of a file, as the study in this directory is to go on with it, if one has begun.
+protocols::Protocol protocol_to_go_on_with(const std::string& file, const std::string& language,
+                                           const std::string& directory);
 
 // A trial as it was presented, as its task sees it.
 protocols::PlannedTrial stored_trial(const results::TrialRow& row,

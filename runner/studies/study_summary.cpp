@@ -23,6 +23,7 @@
 #include "protocols/schedule/catch_trials.hpp"
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
+#include "protocols/surface/surface_noise.hpp"
 #include "results/store/study_queries.hpp"
 #include "runner/session/engine/practice.hpp"
 #include "runner/session/engine/stored_names.hpp"
@@ -332,15 +333,42 @@ std::vector<std::pair<std::string, std::string>> provenance(
         fmt::format("{}, {} Hz, {}", session.device, session.rate_hz, session.scheduler));
     seeds.push_back(fmt::format("{} {}", session.participant_id, session.seed));
   }
-  return {{"protocol", study.protocol_file},
-          {"protocol SHA-256", study.protocol_sha256},
-          {"tapstudy", fmt::format("{}", fmt::join(programs, "; "))},
-          {"device", fmt::format("{}", fmt::join(devices, "; "))},
-          {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
+  std::vector<std::pair<std::string, std::string>> all{
+      {"protocol", study.protocol_file},
+      {"protocol SHA-256", study.protocol_sha256},
+      {"tapstudy", fmt::format("{}", fmt::join(programs, "; "))},
+      {"device", fmt::format("{}", fmt::join(devices, "; "))},
+      {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
+  for (const results::SurfaceRow& surface : study.surfaces) {
+    const protocols::SurfaceNoise noise =
+        protocols::noise_of({surface.file, surface.bytes, surface.sha256});
+    if (!noise.describe().empty()) {
+      all.emplace_back("surface " + surface.file, noise.describe());
+    }
+  }
+  return all;
+}
+
+// Of studies of which some were begun before the usual element order changed, a later one.
+void check_states_orders(results::Store& later, const std::vector<std::string>& directories) {
+  const protocols::Protocol protocol = stored_protocol(later);
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.technique->needs_model() && !stimulus.technique->needs_beam() &&
+        stimulus.plate->mesh.order == core::chosen_order) {
+      throw core::InvalidInput{fmt::format(
+          "{}: the plate of '{}' states no mesh.order, so that its elements are linear in studies "
+          "begun by tapstudy before 0.3, and in the others are not: their answers cannot be put "
+          "into one report",
+          fmt::join(directories, ", "), stimulus.name)};
+    }
+  }
 }
 
 void check_same_protocol(const std::vector<StudyStore>& stores) {
   const results::StudyRow first = stores.front().store->study();
+  std::vector<std::string> directories;
+  results::Store* later = nullptr;
+  results::Store* of_linear_ones = nullptr;
   for (const StudyStore& other : stores) {
     const results::StudyRow study = other.store->study();
     if (study.protocol_sha256 != first.protocol_sha256 || study.surfaces != first.surfaces) {
@@ -348,6 +376,12 @@ void check_same_protocol(const std::vector<StudyStore>& stores) {
           "{} and {} hold different protocols: their answers cannot be put into one report",
           stores.front().directory, other.directory)};
     }
+    directories.push_back(other.directory);
+    const bool is_linear = defaults_of(*other.store).element_order == 1;
+    (is_linear ? of_linear_ones : later) = other.store;
+  }
+  if (later != nullptr && of_linear_ones != nullptr) {
+    check_states_orders(*later, directories);
   }
 }
 
@@ -377,21 +411,6 @@ void check_different_participants(const std::vector<StudyStore>& stores) {
       }
     }
   }
-}
-}  // namespace
-
-namespace {
-bool is_before(const std::string& version, int major, int minor) {
-  const auto first_dot = version.find('.');
-  const auto second_dot = version.find('.', first_dot + 1);
-  if (first_dot == std::string::npos || second_dot == std::string::npos) {
-    return false;
-  }
-  const std::string_view text{version};
-  const auto of_major = core::number_in<int>(text.substr(0, first_dot));
-  const auto of_minor =
-      core::number_in<int>(text.substr(first_dot + 1, second_dot - first_dot - 1));
-  return of_major && of_minor && std::pair{*of_major, *of_minor} < std::pair{major, minor};
 }
 }  // namespace
 
@@ -439,7 +458,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   check_same_protocol(stores);
   check_different_participants(stores);
   const results::StudyRow study = stores.front().store->study();
-  const protocols::Protocol protocol = stored_protocol(study);
+  const protocols::Protocol protocol = stored_protocol(*stores.front().store);
   StoredResults all;
   std::vector<std::string> directories;
   for (const StudyStore& each : stores) {

@@ -41,9 +41,9 @@ results::TaskRule rule_of(const std::optional<protocols::Protocol>& protocol) {
           }};
 }
 
-std::optional<protocols::Protocol> protocol_of(const results::StudyRow& study, Lines& remarks) {
+std::optional<protocols::Protocol> protocol_of(results::Store& store, Lines& remarks) {
   try {
-    return stored_protocol(study);
+    return stored_protocol(store);
   } catch (const core::InvalidInput&) {
     remarks.emplace_back("the study's protocol cannot be read by this version");
     return std::nullopt;
@@ -81,7 +81,7 @@ bool Verification::is_sound() const {
 Verification verification_of(results::Store& store, const std::string& directory) {
   Verification found;
   const results::StudyRow study = store.study();
-  const std::optional<protocols::Protocol> protocol = protocol_of(study, found.remarks);
+  const std::optional<protocols::Protocol> protocol = protocol_of(store, found.remarks);
   found.recomputed = results::recompute(store, rule_of(protocol));
   found.broken = results::broken_rules(store);
   if (protocol) {

@@ -408,8 +408,10 @@ TEST_CASE("a value that is empty, or a file's name that promises another format,
 TEST_CASE("too little memory for a fine mesh is one sentence", "[end_to_end]") {
   const TempDirectory directory;
   const std::string study =
-      changed(directory, "forces.yaml", "  four_fixations:\n",
-              "  four_fixations:\n    mesh: {order: 2, max_tet_volume_m3: 2.0e-6}\n");
+      changed(directory, "forces.yaml",
+              "  four_fixations:\n    size_m: [0.6, 0.6, 0.05]\n    mesh: {order: 1}\n",
+              "  four_fixations:\n    size_m: [0.6, 0.6, 0.05]\n"
+              "    mesh: {order: 2, max_tet_volume_m3: 2.0e-6}\n");
   const auto run = testing::run_program({"/bin/sh", "-c",
                                          "ulimit -v 700000; exec " + testing::tapstudy_program() +
                                              " modes " + study + " --stimulus mdf_four"});
@@ -452,10 +454,11 @@ std::string study_on_a_surface(const TempDirectory& directory, const std::string
   std::string text = testing::contents(paper("reality_vibration.yaml"));
   text = replaced(text, "lateral_scale: 0.1", "lateral_scale: 1");
   text = replaced(text,
-                  "    size_m: [0.6, 0.6, 0.05]\n    fixations:\n"
+                  "    size_m: [0.6, 0.6, 0.05]\n    mesh: {order: 1}\n    fixations:\n"
                   "      - {region: vertex, at_m: [-0.3, -0.3], face: both, axes: xyz}\n"
                   "      - {region: vertex, at_m: [0.3, -0.3], face: both, axes: xyz}\n",
-                  "    surface: {file: body.off, metres_per_unit: 0.001}\n    fixations:\n"
+                  "    surface: {file: body.off, metres_per_unit: 0.001}\n    mesh: {order: 1}\n"
+                  "    fixations:\n"
                   "      - {region: side, side: left}\n");
   text = replaced(text, "  P1: [-0.24, -0.24]\n  P2: [0.0, 0.0]\n  P3: [0.24, 0.24]\n",
                   "  P1: [0.05, 0.05]\n  P2: [0.15, 0.1]\n  P3: [0.25, 0.15]\n");
@@ -504,7 +507,7 @@ TEST_CASE("what only the finished model shows to be wrong is told at its line", 
                "3 modes") &&
           Catch::Matchers::Matches("(.|\n)*\\.yaml:[0-9]+:[0-9]+: materials(.|\n)*"));
   CHECK_THAT(
-      said("  two_fixations:\n", "  two_fixations:\n    mesh: {accuracy: 0.1}\n"),
+      said("mesh: {order: 1}", "mesh: {accuracy: 0.1}"),
       Contains("plates.two_fixations: stimulus 'acrylic_two': mesh.accuracy: fixation 1 is a "
                "point or a line"));
 }

@@ -74,7 +74,7 @@ placement: {origin_m: [0, 0, 0], lateral_scale: 0.1}
 materials:
   mdf: {youngs_modulus_pa: 2.5e9, density_kg_per_m3: 610, poissons_ratio: 0.25, damping: {ratio: 0.02}}
 plates:
-  held: {size_m: [0.6, 0.6, 0.05], fixations: [{region: disc, at_m: [0.25, 0.25], radius_m: 0.02}]}
+  held: {size_m: [0.6, 0.6, 0.05], mesh: {order: 1}, fixations: [{region: disc, at_m: [0.25, 0.25], radius_m: 0.02}]}
 tapping_points_m: {middle: [0, 0]}
 stimuli:
   bare: {label: bare, plate: held, material: mdf, technique: none}

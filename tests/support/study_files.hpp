@@ -53,6 +53,7 @@ materials:
 plates:
   screwed:
     size_m: [0.6, 0.4, 0.02]
+    mesh: {order: 1}
     fixations:
       - {region: disc, at_m: [-0.25, -0.15], radius_m: 0.02, face: both}
       - {region: box, low_m: [0.2, -0.2, -0.02], high_m: [0.3, -0.1, 0]}

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/model/element_order.hpp"
 #include "core/model/plate_model.hpp"
 #include "core/model/progress.hpp"
 #include "core/model/shape/shape.hpp"
@@ -315,6 +316,7 @@ class Tradeoff {
       }
       Evaluation built;
       built.setting.mesh = mesh;
+      built.setting.mesh.order = body.report.order;
       built.setting.band_limit_hz = band_hz;
       built.setting.is_protocols = is_protocols;
       built.tets = body.report.tets;
@@ -324,7 +326,9 @@ class Tradeoff {
       built.tick_ns = bench_.tick_ns(plate);
       try_rates(built, plate, trade.settings);
     } catch (const core::ModelError& error) {
-      trade.refused.push_back({mesh, band_hz, is_protocols, error.what()});
+      core::Meshing refused = mesh;
+      refused.order = mesh.order == core::chosen_order ? 2 : mesh.order;
+      trade.refused.push_back({refused, band_hz, is_protocols, error.what()});
     }
   }
 

@@ -7,6 +7,8 @@
 
 #include "core/error.hpp"
 #include "core/model/beam.hpp"
+#include "core/model/discrete_body.hpp"
+#include "core/model/element_order.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/plate_model.hpp"
 #include "support/catch.hpp"
@@ -264,6 +266,47 @@ TEST_CASE("sheets of a millimetre and below, simply supported, have Navier's fre
   REQUIRE(built.modal.frequency_hz.size() >= 2);
   CHECK(built.modal.frequency_hz[0] == Approx(navier_hz(1, 1)).epsilon(sheet.tolerance));
   CHECK(built.modal.frequency_hz[1] == Approx(navier_hz(2, 1)).epsilon(2.0 * sheet.tolerance));
+}
+
+// Navier's solution, 1 - 0.9 % by shear and rotary inertia at this thickness (Mindlin 1951).
+TEST_CASE("a thin plate that states neither order nor size has its theory's first frequency",
+          "[core][model]") {
+  const double width_m = 0.5;
+  const double height_m = 0.025;
+  const double poisson = 0.3;
+  const double navier_hz =
+      M_PI / (width_m * width_m) *
+      std::sqrt(youngs_pa * height_m * height_m / (12.0 * density * (1.0 - poisson * poisson)));
+  core::PlateSpec plate{{core::Box{{width_m, width_m, height_m}}, {}, {}},
+                        {youngs_pa, density, poisson, core::RayleighDamping{}},
+                        1.5 * navier_hz};
+  plate.mesh.order = core::chosen_order;
+  for (const core::Side side :
+       {core::Side::left, core::Side::right, core::Side::front, core::Side::back}) {
+    plate.fixations.push_back(held_side(side, {false, false, true}));
+  }
+  const core::PlateModel usual = core::build_plate_model(plate);
+  REQUIRE(usual.modal.frequency_hz.size() > 0);
+  CHECK(usual.modal.frequency_hz[0] == Approx(0.991 * navier_hz).epsilon(0.03));
+  plate.mesh.order = 1;
+  plate.band_limit_hz *= 2.0;
+  CHECK(core::build_plate_model(plate).modal.frequency_hz[0] > 1.5 * navier_hz);
+}
+
+TEST_CASE("elements are linear where quadratic ones would be too many, unless they are asked for",
+          "[core][model][slow]") {
+  core::Plate cube{core::Box{{1.0, 1.0, 1.0}}, {}, {held_side(core::Side::bottom)}};
+  cube.mesh.order = core::chosen_order;
+  const core::Material material{youngs_pa, density, 0.3, core::RayleighDamping{}};
+  const auto order = [&](double tets) {
+    core::MeshSize size;
+    size.max_tet_volume_m3 = 1.0 / tets;
+    return core::discretised(cube, material, size, {}, {}).mesh.order();
+  };
+  CHECK(order(1e3) == 2);
+  CHECK(order(4e4) == 1);
+  cube.mesh.order = 2;
+  CHECK(order(4e4) == 2);
 }
 
 TEST_CASE("order 2 comes nearer than order 1 on the same tetrahedra, and from above",

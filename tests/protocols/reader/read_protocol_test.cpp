@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "protocols/form.hpp"
+#include "protocols/reader/earlier_defaults.hpp"
 #include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -55,6 +56,37 @@ TEST_CASE("whole numbers are read as YAML 1.2 has them", "[protocols]") {
   CHECK(protocols::parse_protocol(replaced(discrimination(), "rate_hz: 1000", "rate_hz: 01750"),
                                   "study.yaml")
             .rate_hz == 1750.0);
+}
+
+TEST_CASE("a plate that states no element order has that of the study's time, or its own choice",
+          "[protocols][model]") {
+  const auto order = [](const std::string& mesh, const protocols::EarlierDefaults& defaults) {
+    const std::string text = replaced(discrimination(), "    mesh: {order: 1}\n", mesh);
+    return protocols::parse_protocol(protocols::StudyText{text, "study.yaml"}, {}, defaults)
+        .plates.at("two_fixations")
+        ->mesh.order;
+  };
+  CHECK(order("", {}) == core::chosen_order);
+  CHECK(order("    mesh: {accuracy: 0.1}\n", {}) == core::chosen_order);
+  CHECK(order("", {1}) == 1);
+  CHECK(order("    mesh: {accuracy: 0.1}\n", {1}) == 1);
+  CHECK(order("    mesh: {order: 2}\n", {1}) == 2);
+  CHECK(order("    mesh: {order: 1}\n", {}) == 1);
+}
+
+TEST_CASE("the paper's own studies keep linear elements", "[protocols]") {
+  int plates = 0;
+  for (const auto& entry : std::filesystem::directory_iterator{testing::shipped("paper")}) {
+    if (entry.path().extension() != ".yaml") {
+      continue;
+    }
+    for (const auto& [name, plate] : protocols::read_protocol(entry.path().string()).plates) {
+      INFO(entry.path() << ", " << name);
+      CHECK(plate->mesh.order == 1);
+      ++plates;
+    }
+  }
+  CHECK(plates >= 7);
 }
 
 TEST_CASE("columns in messages count characters", "[protocols]") {

@@ -4,14 +4,18 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <numeric>
 
 #include "core/error.hpp"
 #include "core/model/body_modes.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/shape/shape.hpp"
+#include "core/random/rng.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "protocols/surface/check_surface.hpp"
+#include "protocols/surface/join_points.hpp"
 #include "protocols/surface/surface_file.hpp"
+#include "protocols/surface/surface_noise.hpp"
 #include "protocols/yaml/text_file.hpp"
 #include "support/catch.hpp"
 #include "support/surfaces.hpp"
@@ -374,6 +378,105 @@ TEST_CASE("equal surfaces are equal bodies, to the last digit", "[protocols][sur
   CHECK(same(modes("body.obj", as_obj(in_mm), 0.001)));
   CHECK(same(modes("metres.ply", as_ply(in_m), 1.0)));
   CHECK(same(modes("shuffled.stl", as_ascii_stl(shuffled), 0.001)));
+}
+
+namespace {
+// Each triangle with corners of its own, off by up to `noise_m` along each axis.
+core::TriangleSurface with_noise(const core::TriangleSurface& surface, double noise_m) {
+  core::Rng rng{7};
+  core::TriangleSurface apart;
+  apart.points_m.resize(surface.triangles.size(), 3);
+  apart.triangles.resize(surface.triangles.rows(), 3);
+  for (Eigen::Index i = 0; i < surface.triangles.size(); ++i) {
+    apart.points_m.row(i) = surface.points_m.row(surface.triangles(i / 3, i % 3));
+    for (double& x : apart.points_m.row(i)) {
+      x += noise_m * (2.0 * rng.uniform() - 1.0);
+    }
+    apart.triangles(i / 3, i % 3) = static_cast<int>(i);
+  }
+  return apart;
+}
+// The same in a file that has its points and triangles from last to first, each triangle turned.
+core::TriangleSurface from_last_to_first(const core::TriangleSurface& surface) {
+  const int last = static_cast<int>(surface.points_m.rows()) - 1;
+  core::TriangleSurface reversed = surface;
+  reversed.points_m = surface.points_m.colwise().reverse().eval();
+  reversed.triangles = (last - surface.triangles.array()).matrix().colwise().reverse().eval();
+  for (auto triangle : reversed.triangles.rowwise()) {
+    triangle = Eigen::RowVector3i{triangle[1], triangle[2], triangle[0]};
+  }
+  return reversed;
+}
+core::TriangleSurface reread(const core::TriangleSurface& surface) {
+  return read_text("body.off", as_off(surface));
+}
+protocols::SurfaceNoise noise_in(const core::TriangleSurface& surface) {
+  return protocols::noise_of(protocols::surface_source("body.off", as_off(surface)));
+}
+}  // namespace
+
+TEST_CASE("corners that differ by a writing program's noise are one, and that is told",
+          "[protocols][surface]") {
+  const std::vector<core::TriangleSurface> bodies{
+      testing::sphere_surface(0.1, 12), testing::box_surface(plate_size_m, 3),
+      testing::notched_block(),
+      shifted(testing::box_surface({0.01, 0.02, 0.03}), {0.3, -0.2, 0.1})};
+  const double share = GENERATE(1e-12, 1e-9, 1e-8, 1e-7, 2.5e-7);
+  for (const core::TriangleSurface& body : bodies) {
+    const double noise_m = share * core::bounds(body).size_m().norm();
+    CAPTURE(body.points_m.rows(), share);
+    const core::TriangleSurface noisy = with_noise(body, noise_m);
+    const core::TriangleSurface read = reread(noisy);
+    CHECK_NOTHROW(check_surface(read));
+    CHECK(read.points_m.rows() == body.points_m.rows());
+    CHECK(read.triangles.rows() == body.triangles.rows());
+    CHECK(core::volume_m3(read) == Approx(core::volume_m3(body)).epsilon(1e-5));
+    CHECK(are_equal(reread(from_last_to_first(noisy)), read));
+    const protocols::SurfaceNoise noise = noise_in(noisy);
+    CHECK(noise.points == body.triangles.size() - body.points_m.rows());
+    CHECK(noise.without_area == 0);
+    CHECK(noise.farthest <= 2.0 * std::sqrt(3.0) * share * 1.001);
+    CHECK(noise.farthest > share);
+    CHECK_THAT(noise.describe(), Contains(std::to_string(noise.points) +
+                                          " of its points differ from others by noise"));
+    CHECK(noise_in(body).describe().empty());
+  }
+}
+
+TEST_CASE("corners further apart than noise stay apart, and so does a chain of noise",
+          "[protocols][surface]") {
+  const core::TriangleSurface box = testing::box_surface(plate_size_m, 2);
+  CHECK_THROWS_WITH(check_surface(reread(with_noise(box, 1e-5 * plate_size_m.norm()))),
+                    Contains("open"));
+  // along a metre: a pair closer than noise, and ten points each closer than that to the next
+  std::vector<core::Vec3> points{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.9e-6}, {0.0, 0.5, 0.0}};
+  for (int i = 0; i < 10; ++i) {
+    points.emplace_back(0.5 + 0.9e-6 * i, 0.0, 0.0);
+  }
+  points.emplace_back(1.0, 0.0, 0.0);
+  std::vector<std::size_t> expected(points.size());
+  std::iota(expected.begin(), expected.end(), std::size_t{0});
+  expected[1] = 0;
+  CHECK(protocols::without_noise(points) == expected);
+}
+
+TEST_CASE("a triangle with two corners in one point is left out, and that is told",
+          "[protocols][surface]") {
+  const core::TriangleSurface box = testing::box_surface(plate_size_m, 2);
+  core::TriangleSurface more = box;
+  more.points_m.conservativeResize(box.points_m.rows() + 2, 3);
+  more.points_m.bottomRows(2) << box.points_m.row(0),
+      box.points_m.row(0) + Eigen::RowVector3d::Constant(1e-9);
+  more.triangles.conservativeResize(box.triangles.rows() + 2, 3);
+  const int added = static_cast<int>(box.points_m.rows());
+  more.triangles.bottomRows(2) << 0, added, 3, 5, 0, added + 1;
+  CHECK(are_equal(reread(more), reread(box)));
+  CHECK(noise_in(more).points == 1);
+  CHECK(noise_in(more).without_area == 2);
+  CHECK_THAT(noise_in(more).describe(), Contains("2 of its triangles have two corners in one"));
+  core::TriangleSurface nothing = more;
+  nothing.triangles = more.triangles.bottomRows(2).eval();
+  CHECK_THROWS_WITH(reread(nothing), Contains("no triangle of it has an area"));
 }
 
 TEST_CASE("files that are no surface are refused with their name", "[core][surface]") {

@@ -349,7 +349,7 @@ TEST_CASE("whoever reads a study that was changed reads it, or ends in an error 
     try {
       runner::summary_of_study({{study.path(), &study.store()}}, results::Mode::simulated,
                                runner::Detail::main_results);
-      const protocols::Protocol protocol = runner::stored_protocol(study.store().study());
+      const protocols::Protocol protocol = runner::stored_protocol(study.store());
       runner::check_names(study.store(), protocol);
       for (const results::Table& table : results::study_tables(study.store(), {})) {
         table.each_row([](const results::Row& /*row*/) {});
@@ -378,7 +378,7 @@ TEST_CASE("a trial of a block that the protocol lacks is named by whoever reads 
             runner::summary_of_study({{study.path(), &study.store()}}, results::Mode::simulated),
             Contains("trial 2 is of block 'nowhere', which the protocol lacks"));
         CHECK_THROWS_AS(
-            runner::check_names(study.store(), runner::stored_protocol(study.store().study())),
+            runner::check_names(study.store(), runner::stored_protocol(study.store())),
             results::StoreError);
       });
 }

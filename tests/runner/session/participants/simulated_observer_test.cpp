@@ -290,6 +290,7 @@ materials:
 plates:
   held:
     size_m: [0.3, 0.3, 0.05]
+    mesh: {{order: 1}}
     fixations: [{{region: disc, at_m: [0.1, 0.1], radius_m: 0.02}}]
 tapping_points_m: {{middle: [0, 0]}}
 stimuli:

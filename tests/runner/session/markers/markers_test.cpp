@@ -275,7 +275,7 @@ TEST_CASE("a reader that stops reading delays nobody; what it missed is counted"
   const TempDirectory directory;
   const std::string pipe = new_pipe(directory);
   const Descriptor reader{reader_of(pipe)};
-  runner::Markers markers{{std::nullopt, pipe}};
+  runner::Markers markers{{std::nullopt, std::nullopt, pipe}};
   constexpr int count = 5000;
   CHECK(slowest_of(count, [&] { markers.send(change); }) < at_once_s);
   const std::string got = reader.read_all();

@@ -319,8 +319,10 @@ void Store::check_version() {
   }
   const std::int64_t version = database_.pragma("user_version");
   if (version != schema_version) {
-    throw StoreError{fmt::format("{}: has schema {}, this program reads {}", database_.file(),
-                                 version, schema_version)};
+    throw StoreError{
+        fmt::format("{}: has schema {}, this program reads {} (the version of "
+                    "tapstudy that wrote it reads it)",
+                    database_.file(), version, schema_version)};
   }
 }
 }  // namespace tapstudy::results

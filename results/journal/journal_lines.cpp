@@ -112,18 +112,8 @@ JournalledAnswer answer_from(const Json& line) {
   return answer;
 }
 
-void check_session_is_there(const Json& line, const JournalContent& content) {
-  const std::int64_t id = line.at("session_id");
-  if (std::ranges::find(content.sessions, id, &SessionRow::id) == content.sessions.end()) {
-    throw StoreError{fmt::format("is of session {}, which does not stand before it", id)};
-  }
-}
-
 void add_line(const Json& line, JournalContent& content) {
   const std::string kind = line.at("kind");
-  if (kind != "study" && kind != "session") {
-    check_session_is_there(line, content);
-  }
   if (kind == "study" && !content.study.protocol_text.empty()) {
     throw StoreError{"begins a second study"};
   }

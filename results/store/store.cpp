@@ -125,21 +125,29 @@ Store Store::from_journal(const std::string& directory) {
     store.add_session(session);
     new_ids[id] = session.id;
   }
+  const auto new_id = [&](std::int64_t id) {
+    const auto found = new_ids.find(id);
+    if (found == new_ids.end()) {
+      throw StoreError{fmt::format("{}: has entries of session {}, but not the session",
+                                   store.database_.file(), id)};
+    }
+    return found->second;
+  };
   for (const JournalledAnswer& answer : content.entries.answers) {
     TrialRecord record{answer.trial, answer.alternatives, answer.response, {}, {}, {}, {}};
-    record.trial.session_id = new_ids[answer.trial.session_id];
+    record.trial.session_id = new_id(answer.trial.session_id);
     store.add_trial(record);
   }
   for (CorrectionRow correction : content.entries.corrections) {
-    correction.session_id = new_ids[correction.session_id];
+    correction.session_id = new_id(correction.session_id);
     store.insert_correction(correction);
   }
   for (OperatorActionRow action : content.entries.actions) {
-    action.session_id = new_ids[action.session_id];
+    action.session_id = new_id(action.session_id);
     store.insert_action(action);
   }
   for (FormAnswerRow answer : content.entries.form_answers) {
-    answer.session_id = new_ids[answer.session_id];
+    answer.session_id = new_id(answer.session_id);
     store.insert_form_answer(answer);
   }
   return store;
@@ -319,8 +327,10 @@ void Store::check_version() {
   }
   const std::int64_t version = database_.pragma("user_version");
   if (version != schema_version) {
-    throw StoreError{fmt::format("{}: has schema {}, this program reads {}", database_.file(),
-                                 version, schema_version)};
+    throw StoreError{
+        fmt::format("{}: has schema {}, this program reads {} (the version of "
+                    "tapstudy that wrote it reads it)",
+                    database_.file(), version, schema_version)};
   }
 }
 }  // namespace tapstudy::results

@@ -94,13 +94,25 @@ AnswerInView in_view(const results::JournalledAnswer& answer, const protocols::P
           block.task->answers(block, protocol), answer.response.response};
 }
 
+struct CheckedStudy {
+  results::StudyRow study;
+  protocols::Protocol protocol;
+};
+// Before anything is written, to the journal either.
+CheckedStudy checked_study(const std::string& directory) {
+  results::Store store = results::Store::open_existing(directory);
+  CheckedStudy checked{store.study(), {}};
+  checked.protocol = stored_protocol(store);
+  check_names(store, checked.protocol);
+  return checked;
+}
+
 void amend(const AmendOptions& options) {
   const OperatorCommand command = amendment_in(options.action);
-  const results::StudyRow study = results::Store::open_existing(options.directory).study();
+  const CheckedStudy checked = checked_study(options.directory);
+  const protocols::Protocol& protocol = checked.protocol;
   const ParticipantLock lock{options.directory, options.participant};
-  results::Store store = results::Store::open_or_create(options.directory, study);
-  const protocols::Protocol protocol = stored_protocol(store);
-  check_names(store, protocol);
+  results::Store store = results::Store::open_or_create(options.directory, checked.study);
   const results::SessionRow session = session_of(options, command.trial, store);
   results::Recorder recorder{store};
   OperatorDesk desk{

@@ -160,7 +160,11 @@ void check(const LiveSession& live) {
     check_can_listen(live.console->address);
   }
   if (live.request.resume == Resume::yes) {
-    results::Store::open_existing(live.directory);  // or there is nothing to resume
+    results::Store earlier = results::Store::open_existing(live.directory);  // or there is none
+    const results::StudyRow study = study_row(live.protocol, live.protocol_file);
+    if (earlier.study().protocol_sha256 == study.protocol_sha256) {
+      check_names(earlier, live.protocol);  // before anything is written
+    }
   }
 }
 

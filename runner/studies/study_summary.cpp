@@ -466,8 +466,8 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     append(all, stored_results(*each.store, protocol, mode, detail));
     directories.push_back(each.directory);
   }
-  if (std::ranges::all_of(
-          stores, [](const StudyStore& each) { return each.store->sessions().empty(); })) {
+  if (std::ranges::all_of(stores,
+                          [](const StudyStore& each) { return each.store->sessions().empty(); })) {
     throw core::InvalidInput{
         fmt::format("{}: is the unfinished beginning of a study, without a session",
                     fmt::join(directories, ", "))};

@@ -33,8 +33,9 @@ namespace {
   }
 }
 
-// The last trial confirmed before the kill; 0 if none.
-int confirmed_before_kill(const std::string& directory, std::chrono::microseconds after) {
+// The last trial confirmed before the kill, which comes some time after so many were; 0 if none.
+int confirmed_before_kill(const std::string& directory, std::size_t trials,
+                          std::chrono::microseconds after) {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   const pid_t child = fork();
@@ -43,9 +44,12 @@ int confirmed_before_kill(const std::string& directory, std::chrono::microsecond
     store_without_end(directory, ends[1]);
   }
   close(ends[1]);
+  int confirmed = 0;
+  for (std::size_t i = 0; i < trials; ++i) {
+    REQUIRE(read(ends[0], &confirmed, sizeof confirmed) == sizeof confirmed);
+  }
   std::this_thread::sleep_for(after);
   kill(child, SIGKILL);
-  int confirmed = 0;
   for (int number = 0; read(ends[0], &number, sizeof number) == sizeof number;) {
     confirmed = number;
   }
@@ -67,8 +71,9 @@ TEST_CASE("of a hundred kills at random moments none loses or doubles a confirme
   core::Rng rng{20};
   int confirmed = 0;
   for (int i = 0; i < 100; ++i) {
-    const std::chrono::microseconds after{static_cast<int>(60e3 * rng.uniform())};
-    confirmed = std::max(confirmed, confirmed_before_kill(directory.path(), after));
+    const auto trials = static_cast<std::size_t>(3.0 * rng.uniform());  // 0: while it begins
+    const std::chrono::microseconds after{static_cast<int>(30e3 * rng.uniform())};
+    confirmed = std::max(confirmed, confirmed_before_kill(directory.path(), trials, after));
     if (!Store::has_database(directory.path())) {
       continue;  // killed before there was a study
     }

@@ -413,8 +413,12 @@ TEST_CASE("a line of the journal that tapstudy did not write is refused in words
                       Catch::Matchers::EndsWith("line 3: is not a line as tapstudy writes it") ||
                           Contains("line 3: was changed"));
   }
-  const std::string body = "{\"kind\":\"answer\",\"session_id\":9}";
-  testing::write(file, before + results::join_line({body, results::chain_of(chain, body)}) + "\n");
-  CHECK_THROWS_WITH(results::read_journal(directory.path()),
-                    Contains("line 3: is of session 9, which does not stand before it"));
+}
+
+TEST_CASE("a journal whose session is lost makes no study, and says which", "[runner][verify]") {
+  const testing::TempDirectory directory;
+  results::Journal{directory.path()}.complete([] { return testing::small_study::study; }, {},
+                                              {.actions = {{9, 1.0, "note", {}, "coughed"}}});
+  CHECK_THROWS_WITH(results::Store::from_journal(directory.path()),
+                    Contains("has entries of session 9, but not the session"));
 }

@@ -255,7 +255,8 @@ std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
   return fmt::format(
       "  warning: {} has linear elements, as quadratic ones would have more than {} unknowns: its "
       "frequencies may be far too high (fewer elements: a surface of fewer triangles, mesh: "
-      "radius_edge_ratio: 2; or mesh: order: 2, if time and memory allow)\n",
+      "radius_edge_ratio: 2 or a larger max_tet_volume_m3; or order: 2, if time and memory "
+      "allow)\n",
       stimulus.name, core::max_chosen_dofs);
 }
 

@@ -80,12 +80,12 @@ TEST_CASE("a scaled axis may be written as a list of its ends and its spacing",
   };
   CHECK(ranges("[1e9, 5e9, log]") == ranges("{from: 1e9, to: 5e9, spacing: log}"));
   CHECK(ranges("[1e9, 5e9]") == ranges("{from: 1e9, to: 5e9}"));
-  const std::string at{"study.yaml:29:26: stimuli.a.vary.youngs_modulus_pa"};
+  const std::string at{"study.yaml:30:26: stimuli.a.vary.youngs_modulus_pa"};
   refused({"youngs_modulus_pa: [1e9]"}, at + ": is not a list of from, to, spacing: it has 1");
   refused({"youngs_modulus_pa: [1e9, 2e9, log, 3]"}, at + ": is not a list of");
   refused({"youngs_modulus_pa: []"}, at + ": is not a list of");
   refused({"youngs_modulus_pa: [5e9, 1e9]"},
-          "study.yaml:29:27: stimuli.a.vary.youngs_modulus_pa.from");
+          "study.yaml:30:27: stimuli.a.vary.youngs_modulus_pa.from");
   refused({"youngs_modulus_pa: [1e9, 5e9, lgo]"},
           "spacing: 'lgo' is not a known value (one of: linear, log)");
   refused({"damping_scale: [0, 2, log]"}, "log needs values above 0");
@@ -118,7 +118,7 @@ TEST_CASE("a vary that cannot be meant is refused at its line", "[protocols][axe
   refused({"youngs_modulus_pa: {from: .nan, to: 1e9}"}, "nan is not allowed");
   refused({"youngs_modulus_pa: {values: [1e9, 2e9]}"}, "values: is not a known key");
   refused({"youngs_modulus: {from: 1e9, to: 2e9}"},
-          "study.yaml:29:7: stimuli.a.vary.youngs_modulus: is not a known key");
+          "study.yaml:30:7: stimuli.a.vary.youngs_modulus: is not a known key");
   refused({"youngs_modulus: {from: 1e9, to: 2e9}"}, "did you mean 'youngs_modulus_pa'?");
   refused({"poissons_ratio: {values: [0.2, 0.5]}"}, "0.5 is not allowed");
   refused({"poissons_ratio: {values: [0.2, 0.2]}"}, "0.2 is listed twice");
@@ -182,7 +182,7 @@ TEST_CASE("an axis that the technique or the plate does not have is refused at i
       testing::replaced(testing::varied_study_text_with({axis}), "technique: fem+sinusoid",
                         std::string{"technique: "} + technique);
   CHECK_THROWS_WITH(protocols::parse_protocol(text, "study.yaml"),
-                    Contains("study.yaml:29:") && Contains(users) &&
+                    Contains("study.yaml:30:") && Contains(users) &&
                         Contains(std::string{"technique '"} + technique + "' does not use it"));
 }
 
@@ -195,7 +195,7 @@ TEST_CASE("Young's modulus does not vary on a plate with springs, density does",
   CHECK_THROWS_WITH(
       protocols::parse_protocol(on_springs("youngs_modulus_pa: {from: 1e9, to: 2e9}"),
                                 "study.yaml"),
-      Contains("study.yaml:29:") && Contains("a plate on springs does not scale with it"));
+      Contains("study.yaml:30:") && Contains("a plate on springs does not scale with it"));
   CHECK_NOTHROW(protocols::parse_protocol(on_springs("density_kg_per_m3: {from: 1000, to: 2000}"),
                                           "study.yaml"));
 }

@@ -216,7 +216,7 @@ TEST_CASE("rendering that a stimulus cannot have of its own is refused at its li
         testing::replaced(testing::varied_study_text, "technique: fem+sinusoid",
                           "technique: " + technique + "\n    rendering: {" + rendering + "}");
     CHECK_THROWS_WITH(protocols::parse_protocol(text, "study.yaml"),
-                      Contains("study.yaml:28:") && Contains(why));
+                      Contains("study.yaml:29:") && Contains(why));
   };
   refused("fem", "sinusoid_decay_per_s: 300", "technique 'fem' does not use it");
   refused("fem-coupled", "vibration_gain: 2", "technique 'fem-coupled' does not use it");

@@ -18,6 +18,7 @@ struct IdentifyOptions {
   std::string band;
   std::string at;
   bool wants_json{false};
+  bool wants_all{false};
   std::string out;
 };
 
@@ -116,7 +117,7 @@ void run_identify(const IdentifyOptions& options) {
   if (options.wants_json) {
     fmt::print("{}\n", json_of(found));
   } else {
-    print(found);
+    print(found, options.wants_all ? Listing::all : Listing::modes);
   }
 }
 }  // namespace
@@ -149,7 +150,8 @@ void add_identify(CommandParser& line) {
   command.number_within("--scale", question.si_per_unit, 1e-12, 1e12,
                         "SI units (m/s2, m/s, m) per unit of the recordings");
   command.option("--band", options->band,
-                 "LOW:HIGH in Hz; default: 10 to the protocol's band limit, or 1000");
+                 "LOW:HIGH in Hz; default: 10 to the highest peak of the recordings, or the "
+                 "protocol's band limit");
   command.number_within("--skip", question.finding.skip_s, 0.0, 1.0,
                         "Seconds after a tap's peak before it rings freely");
   command.number_within("--longest", question.finding.max_s, 0.05, 60.0,
@@ -162,6 +164,8 @@ void add_identify(CommandParser& line) {
       "are then matched by their shapes, too");
   command.option("--at", options->at,
                  "X,Y of the place tapped, m: writes recordings.yaml for technique recorded");
+  command.flag("--all", options->wants_all,
+               "List what is no mode for certain, too: hum, doubtful ones, combinations");
   command.flag("--json", options->wants_json, "Output as JSON");
   command.on_run([options] { run_identify(*options); });
 }

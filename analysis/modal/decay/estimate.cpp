@@ -36,4 +36,20 @@ Estimate estimate_over_taps(const std::vector<double>& values, const std::vector
   }
   return estimate;
 }
+
+Estimate jackknife_estimate(double of_all, const std::vector<double>& without, double of_noise,
+                            double degrees_of_freedom) {
+  const Estimate by_noise = t_estimate(of_all, of_noise, degrees_of_freedom);
+  if (without.size() < 2) {
+    return by_noise;
+  }
+  const auto groups = static_cast<double>(without.size());
+  const double error =
+      mean_and_spread(without).standard_deviation * (groups - 1.0) / std::sqrt(groups);
+  Estimate over_groups = t_estimate(of_all, error, groups - 1.0);
+  over_groups.standard_error = std::max(error, of_noise);
+  const bool is_wider = over_groups.interval.high > by_noise.interval.high;
+  over_groups.interval = is_wider ? over_groups.interval : by_noise.interval;
+  return over_groups;
+}
 }  // namespace tapstudy::analysis

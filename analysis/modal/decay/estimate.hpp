@@ -19,4 +19,11 @@ Estimate t_estimate(double value, double standard_error, double degrees_of_freed
 // and its interval over taps. Values and errors as many, at least one.
 Estimate estimate_over_taps(const std::vector<double>& values, const std::vector<double>& errors,
                             double degrees_of_freedom_of_one);
+
+// The jackknife's error over groups of impacts (Tukey 1958), with Student's interval that is not
+// narrower than what the noise alone gives: where few of the impacts tell, the jackknife's error is
+// of few degrees of freedom. without: the value without each group in turn; fewer than two: noise
+// alone.
+Estimate jackknife_estimate(double of_all, const std::vector<double>& without, double of_noise,
+                            double degrees_of_freedom_of_noise);
 }  // namespace tapstudy::analysis

@@ -226,25 +226,6 @@ std::vector<std::vector<Pole>> poles_without(const std::vector<SharingDecay>& de
   return all;
 }
 
-// The jackknife's error over groups of impacts (Tukey 1958), with Student's interval that is not
-// narrower than what the noise alone gives: where few of the impacts tell the modes apart, the
-// jackknife's error is of few degrees of freedom.
-Estimate estimate(double of_all, const std::vector<double>& without, double of_noise,
-                  double degrees_of_freedom) {
-  const Estimate by_noise = t_estimate(of_all, of_noise, degrees_of_freedom);
-  if (without.size() < 2) {
-    return by_noise;
-  }
-  const auto groups = static_cast<double>(without.size());
-  const double error =
-      mean_and_spread(without).standard_deviation * (groups - 1.0) / std::sqrt(groups);
-  Estimate over_groups = t_estimate(of_all, error, groups - 1.0);
-  over_groups.standard_error = std::max(error, of_noise);
-  const bool is_wider = over_groups.interval.high > by_noise.interval.high;
-  over_groups.interval = is_wider ? over_groups.interval : by_noise.interval;
-  return over_groups;
-}
-
 RepeatedMode repeated(const std::vector<std::vector<Pole>>& without, std::size_t k,
                       const SharedFit& together) {
   const FittedMode& fitted = together.decays.front().modes[k];
@@ -256,13 +237,19 @@ RepeatedMode repeated(const std::vector<std::vector<Pole>>& without, std::size_t
   }
   const double freedom = together.degrees_of_freedom;
   RepeatedMode mode;
-  mode.frequency_hz =
-      estimate(fitted.pole.frequency_hz, frequencies_hz, fitted.frequency_error_hz, freedom);
-  mode.damping_ratio = estimate(fitted.pole.damping_ratio, ratios, fitted.ratio_error, freedom);
+  mode.frequency_hz = jackknife_estimate(fitted.pole.frequency_hz, frequencies_hz,
+                                         fitted.frequency_error_hz, freedom);
+  mode.damping_ratio =
+      jackknife_estimate(fitted.pole.damping_ratio, ratios, fitted.ratio_error, freedom);
   mode.degrees_of_freedom =
       without.size() > 1 ? static_cast<double>(without.size()) - 1.0 : freedom;
   mode.standing = Standing::agreed;
   mode.why = by_all_taps;
+  std::vector<double> amplitudes;
+  for (const DecayFit& decay : together.decays) {
+    amplitudes.push_back(decay.modes[k].amplitude);
+  }
+  mode.amplitude = quantile(amplitudes, 0.5);
   mode.taps = static_cast<int>(std::ranges::count_if(together.decays, [&](const DecayFit& decay) {
     return decay.modes[k].significance >= min_significance;
   }));

@@ -9,6 +9,7 @@
 
 #include "analysis/modal/modes/assignment.hpp"
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/quantiles.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr double same_frequency = 0.02;
@@ -179,6 +180,11 @@ RepeatedMode summary_of(const ModeObservations& group, std::size_t taps,
     mode.why = doubtful.empty() ? "in one tap only" : doubtful.front().mode->why;
   }
   const ImpactMeans of_impacts = impact_means_of(*shown, impacts);
+  std::vector<double> amplitudes;
+  for (const ModeObservation& one : *shown) {
+    amplitudes.push_back(one.mode->fitted.amplitude);
+  }
+  mode.amplitude = quantile(amplitudes, 0.5);
   const double freedom = shown->front().degrees_of_freedom;
   mode.frequency_hz =
       estimate_over_taps(of_impacts.frequencies_hz, of_impacts.frequency_errors_hz, freedom);

@@ -4,6 +4,12 @@
 #include "analysis/modal/decay/estimate.hpp"
 #include "analysis/modal/modes/tap_modes.hpp"
 namespace tapstudy::analysis {
+// How a mode that follows its amplitude begins in a tap: the medians over taps.
+struct AtTap {
+  double frequency_hz{};
+  double damping_ratio{};
+};
+
 // One mode, as several taps show it.
 struct RepeatedMode {
   Estimate frequency_hz;
@@ -14,6 +20,9 @@ struct RepeatedMode {
   std::optional<double> scatter_p{};
   Standing standing{Standing::doubtful};
   std::string why;
+  double amplitude{};  // at the beginning of a decay, the median over taps that show it
+  std::optional<AtTap>
+      at_tap;    // set: it follows its amplitude, and the estimates are those at rest
   int taps{};    // that show it
   int agreed{};  // of these, with both methods
 };

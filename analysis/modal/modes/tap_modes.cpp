@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "analysis/modal/decay/decay_model.hpp"
 #include "analysis/modal/decay/pole_estimation.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -192,6 +193,10 @@ const char* name(Standing standing) {
       return "doubtful";
     case Standing::line:
       return "line";
+    case Standing::background:
+      return "background";
+    case Standing::combination:
+      return "combination";
   }
   return "";
 }
@@ -259,5 +264,53 @@ std::vector<double> missed_lines(const TapModes& tap, const std::vector<TapModes
     }
   }
   return missed;
+}
+
+namespace {
+void add_part(const TapModes& part, TapModes& all) {
+  all.modes.insert(all.modes.end(), part.modes.begin(), part.modes.end());
+  all.lines_hz.insert(all.lines_hz.end(), part.lines_hz.begin(), part.lines_hz.end());
+  for (const TapMode& mode : part.modes) {
+    all.fit.modes.push_back(mode.fitted);
+  }
+  all.fit.has_converged = all.fit.has_converged && part.fit.has_converged;
+  all.pencil.significant_order += part.pencil.significant_order;
+  for (std::size_t i = 0; i < part.pencil.orders.size(); ++i) {
+    if (i == all.pencil.orders.size()) {
+      all.pencil.orders.push_back({part.pencil.orders[i].order, {}});
+    }
+    std::vector<Pole>& poles = all.pencil.orders[i].poles;
+    poles.insert(poles.end(), part.pencil.orders[i].poles.begin(),
+                 part.pencil.orders[i].poles.end());
+  }
+}
+}  // namespace
+
+TapModes joined(const FreeDecay& decay, const Band& band, const std::vector<TapModes>& parts) {
+  if (parts.size() == 1) {
+    return parts.front();
+  }
+  TapModes all;
+  all.fit.has_converged = true;
+  for (const TapModes& part : parts) {
+    add_part(part, all);
+  }
+  all.spectrum = band_spectrum(decay, band);
+  std::vector<Pole> poles;
+  for (const FittedMode& fitted : all.fit.modes) {
+    poles.push_back(fitted.pole);
+  }
+  const DecayModel model{all.spectrum, std::ssize(poles), all.lines_hz};
+  const DecayModel::State state = model.at(model.logs_of(poles));
+  const auto values = static_cast<double>(model.data().size());
+  all.fit.degrees_of_freedom = std::max(1.0, values - static_cast<double>(model.unknowns()));
+  all.fit.sum_of_squares = state.sum_of_squares;
+  all.fit.noise =
+      std::sqrt(2.0 * state.sum_of_squares / all.fit.degrees_of_freedom / model.length());
+  all.fit.explained = 1.0 - state.sum_of_squares / std::max(model.data().squaredNorm(), 1e-300);
+  const Eigen::VectorXd fitted = state.basis * state.shares;
+  all.fit.fitted = fitted.head(fitted.size() / 2) +
+                   std::complex<double>{0.0, 1.0} * fitted.tail(fitted.size() / 2);
+  return all;
 }
 }  // namespace tapstudy::analysis

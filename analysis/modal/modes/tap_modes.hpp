@@ -9,8 +9,9 @@ namespace tapstudy::analysis {
 inline constexpr double min_significance = 25.0;
 
 // agreed: both methods find it, and it is stable over orders; line: it does not decay, and is no
-// mode but hum or another steady tone.
-enum class Standing { agreed, doubtful, line };
+// mode but hum or another steady tone; background: what moves too slowly for a tap's decay to tell;
+// combination: a multiple of a stronger mode, or a sum or difference of stronger modes.
+enum class Standing { agreed, doubtful, line, background, combination };
 const char* name(Standing standing);
 
 struct TapMode {
@@ -50,4 +51,8 @@ std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<doubl
 // Lines that some taps show and this one does not, within 1 % of any mode of its own: beside a mode
 // of nearly the same frequency hum may go unnoticed, and falsify its damping. Each once.
 std::vector<double> missed_lines(const TapModes& tap, const std::vector<TapModes>& taps);
+
+// One tap's modes of several parts of a band, as if they had been found together. Of one part: that
+// part.
+TapModes joined(const FreeDecay& decay, const Band& band, const std::vector<TapModes>& parts);
 }  // namespace tapstudy::analysis

@@ -1,11 +1,14 @@
 #include "analysis/modal/recording/taps.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "analysis/modal/recording/impact_search.hpp"
 #include "analysis/statistics/quantiles.hpp"
@@ -77,16 +80,17 @@ class TapFinder {
   }
 
  private:
-  std::string at(std::size_t onset) const {
-    return fmt::format("the tap at {:.3f} s", static_cast<double>(onset) / recording_.rate_hz);
+  void remark(std::size_t onset, std::string kind, std::string detail) {
+    found_.remarks.push_back(
+        {static_cast<double>(onset) / recording_.rate_hz, std::move(kind), std::move(detail)});
   }
 
   std::size_t begin_of_decay(const Impact& impact, std::size_t last) {
     const std::size_t onset = impact.last_blow;
     if (onset != impact.onset) {
-      found_.remarks.push_back(fmt::format(
-          "{} struck again {:.4f} s later: its decay is taken from there on", at(impact.onset),
-          static_cast<double>(onset - impact.onset) / recording_.rate_hz));
+      remark(impact.onset, "struck again within 30 ms, its decay is taken from there on",
+             fmt::format("{:.4f} s later",
+                         static_cast<double>(onset - impact.onset) / recording_.rate_hz));
     }
     const auto magnitude = [&](std::size_t i) { return std::abs(centred_[i]); };
     std::size_t peak = onset;
@@ -101,10 +105,8 @@ class TapFinder {
     const auto railed_end = std::ranges::lower_bound(rails_, last);
     if (railed_end != rails_.begin() && *(railed_end - 1) >= onset) {
       begin = std::max(begin, *(railed_end - 1) + 1);
-      found_.remarks.push_back(
-          fmt::format("{} is clipped: its decay is taken from {:.4f} s on, after the last sample "
-                      "at the limit",
-                      at(impact.onset), static_cast<double>(begin) / recording_.rate_hz));
+      remark(impact.onset, "clipped, its decay is taken from the last sample at the limit on",
+             fmt::format("at {:.4f} s", static_cast<double>(begin) / recording_.rate_hz));
     }
     return begin;
   }
@@ -119,15 +121,15 @@ class TapFinder {
         begin < last ? std::min(longest, end_of_decay(energies_, begin, last)) : begin;
     const double decay_s = static_cast<double>(end - begin) / recording_.rate_hz;
     if (end - begin < min_decay || decay_s < min_decay_s) {
-      found_.remarks.push_back(fmt::format(
-          "{} is left out: it rings for {} samples, {:.3f} s, until the {} (at least {}, {} s)",
-          at(onset), end - begin, decay_s, end == last && is_followed ? "next tap" : "noise",
-          min_decay, min_decay_s));
+      remark(onset,
+             fmt::format("left out, it rings for fewer than {} samples or {} s", min_decay,
+                         min_decay_s),
+             fmt::format("{} samples, {:.3f} s, until the {}", end - begin, decay_s,
+                         end == last && is_followed ? "next tap" : "noise"));
       return;
     }
     if (end == last && is_followed) {
-      found_.remarks.push_back(
-          fmt::format("{} is cut at the next one, after {:.3f} s", at(onset), decay_s));
+      remark(onset, "cut at the next one", fmt::format("after {:.3f} s", decay_s));
     }
     found_.taps.push_back({impact_, onset, begin, end});
   }
@@ -151,8 +153,10 @@ class TapFinder {
           "more time between them)",
           recording_.file, loudest / energies_.floor);
     }
+    std::vector<std::string> sentences;
+    std::ranges::transform(found_.remarks, std::back_inserter(sentences), sentence);
     return fmt::format("{}: holds no tap that can be used: {}", recording_.file,
-                       fmt::join(found_.remarks, "; "));
+                       fmt::join(sentences, "; "));
   }
 
   const Recording& recording_;
@@ -164,6 +168,11 @@ class TapFinder {
   int impact_{0};
 };
 }  // namespace
+
+std::string sentence(const TapRemark& remark) {
+  return fmt::format("the tap at {:.3f} s: {}{}{}", remark.at_s, remark.kind,
+                     remark.detail.empty() ? "" : ", ", remark.detail);
+}
 
 namespace {
 void check_length(const Recording& recording) {

@@ -14,11 +14,20 @@ struct TapFinding {
   double max_s{2.0};     // of free decay
 };
 
+// What was noticed about one tap.
+struct TapRemark {
+  double at_s{};
+  std::string kind;    // the same words for all taps of which it holds
+  std::string detail;  // of this one: a number with its words; may be empty
+};
+// "the tap at 0.300 s: cut at the next one, after 0.150 s"
+std::string sentence(const TapRemark& remark);
+
 struct FoundTaps {
   std::vector<Tap> taps;
-  int impacts{};                     // those left out included
-  double noise_rms{};                // of the quietest fifth of the recording
-  std::vector<std::string> remarks;  // what was left out, and why
+  int impacts{};                   // those left out included
+  double noise_rms{};              // of the quietest fifth of the recording
+  std::vector<TapRemark> remarks;  // what was left out, and why
 };
 
 // An impact. Further blows within 30 ms belong to it: `last_blow` is the last of them, or the

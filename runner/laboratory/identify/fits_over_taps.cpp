@@ -12,87 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/modal/modes/close_modes.hpp"
 #include "core/error.hpp"
 namespace tapstudy::runner {
-namespace {
-constexpr double default_low_hz = 10.0;
-constexpr double default_high_hz = 1000.0;
-constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
-constexpr double max_rate_share = 0.47;
-}  // namespace
-
-analysis::Band modal_band(const TapQuestion& question, double rate_hz,
-                          std::optional<double> band_limit_hz) {
-  if (!question.band) {
-    return {default_low_hz,
-            std::min(usable_rate_share * rate_hz, band_limit_hz.value_or(default_high_hz))};
-  }
-  if (question.band->high_hz > max_rate_share * rate_hz) {
-    throw core::InvalidInput{fmt::format("--band: ends at {:g} Hz, above {} of the rate of {:g} Hz",
-                                         question.band->high_hz, max_rate_share, rate_hz)};
-  }
-  return *question.band;
-}
-
-analysis::Band band_of_sinusoid(const analysis::Band& sought, double rate_hz) {
-  return {sought.low_hz,
-          std::max(sought.high_hz, std::min(default_high_hz, usable_rate_share * rate_hz))};
-}
-
-namespace {
-std::vector<analysis::TapModes> modes_of(const std::vector<IdentifiedTap>& taps) {
-  std::vector<analysis::TapModes> modes;
-  for (const IdentifiedTap& tap : taps) {
-    modes.push_back(tap.modes);
-  }
-  return modes;
-}
-
-void identify_beside_lines(const analysis::ModeFinding& finding, IdentifiedTap& tap,
-                           std::vector<std::string>& remarks) {
-  try {
-    tap.modes = analysis::identify_modes(tap.decay, finding);
-  } catch (const core::InvalidInput& error) {
-    remarks.push_back(
-        fmt::format("{}: the tap at {:.3f} s rings too short for the {} steady tones that other "
-                    "taps show: they may falsify its damping ({})",
-                    tap.file, tap.time_s, finding.lines_hz.size(), error.what()));
-  }
-}
-
-void share_lines(const analysis::Band& band, std::vector<IdentifiedTap>& taps,
-                 std::vector<std::string>& remarks) {
-  const std::vector<analysis::TapModes> alone = modes_of(taps);
-  for (IdentifiedTap& tap : taps) {
-    analysis::ModeFinding finding{band};
-    finding.lines_hz = analysis::missed_lines(tap.modes, alone);
-    if (!finding.lines_hz.empty()) {
-      identify_beside_lines(finding, tap, remarks);
-    }
-  }
-}
-}  // namespace
-
-std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
-                                                   std::vector<IdentifiedTap>& taps,
-                                                   std::vector<std::string>& remarks) {
-  share_lines(band, taps, remarks);
-  std::vector<analysis::FreeDecay> decays;
-  std::vector<int> impacts;
-  for (const IdentifiedTap& tap : taps) {
-    decays.push_back(tap.decay);
-    impacts.push_back(tap.impact);
-  }
-  const std::vector<analysis::TapModes> alone = modes_of(taps);
-  analysis::ModesOfTaps found = analysis::resolve_close_modes(
-      decays, impacts, band, {alone, analysis::modes_over_taps(alone, impacts)});
-  for (std::size_t i = 0; i < taps.size(); ++i) {
-    taps[i].modes = std::move(found.taps[i]);
-  }
-  return std::move(found.modes);
-}
-
 namespace {
 // The surface's motion is felt through the finger's spring and damper (paper eq. 17), whatever of
 // it was measured: at s = -decay + i omega displacement is velocity / s and acceleration / s^2.
@@ -210,24 +131,23 @@ constexpr Eigen::Index few_values = 500;
 constexpr Eigen::Index few_share = 4;  // samples to a value
 }  // namespace
 
-std::vector<std::string> remarks_on_residuals(const std::vector<IdentifiedTap>& taps) {
-  std::vector<std::string> remarks;
+void remark_on_residuals(const std::vector<IdentifiedTap>& taps, TapRemarks& remarks) {
   for (const IdentifiedTap& tap : taps) {
     const analysis::DecayFit& fit = tap.modes.fit;
     if (!fit.has_converged) {
-      remarks.push_back(
-          fmt::format("{}: the fit of the tap at {:.3f} s did not converge", tap.file, tap.time_s));
+      remarks.add(tap.file, {tap.time_s, "the fit did not converge", {}});
     }
     const double over_noise = fit.noise / std::max(tap.noise_rms, 1e-300);
     if (fit.explained < min_explained && over_noise > max_over_noise) {
-      remarks.push_back(fmt::format(
-          "{}: of the tap at {:.3f} s the modes explain only {:.1f} % of the energy, and what is "
-          "left is {:.0f} times the recording's noise (struck twice, limited by the amplifier, or "
-          "not linear?): do not rely on its modes",
-          tap.file, tap.time_s, 100.0 * fit.explained, over_noise));
+      remarks.add(tap.file,
+                  {tap.time_s,
+                   fmt::format("linear modes explain less than {:.1f} % of the energy, and what is "
+                               "left is more than {:.0f} times the recording's noise (struck "
+                               "twice, limited by the amplifier, or not linear?)",
+                               100.0 * min_explained, max_over_noise),
+                   fmt::format("{:.1f} %, {:.0f} times", 100.0 * fit.explained, over_noise)});
     }
   }
-  return remarks;
 }
 
 std::vector<std::string> remarks_on_scatter(const std::vector<analysis::RepeatedMode>& modes) {

@@ -41,6 +41,7 @@ Json json_of(const analysis::AmplitudeLine& line) {
           {"is_proportional", line.is_proportional()}};
 }
 
+Json json_of(const analysis::AtTap& at_tap);
 Json json_of(const analysis::RayleighFit& fit);
 Json json_of(const SinusoidLaw& law);
 Json json_of(const ModelComparison& model);
@@ -90,9 +91,15 @@ Json json_of(const IdentifiedTap& tap) {
   return json;
 }
 
+Json json_of(const analysis::AtTap& at_tap) {
+  return {{"frequency_hz", at_tap.frequency_hz}, {"damping_ratio", at_tap.damping_ratio}};
+}
+
 Json json_of(const analysis::RepeatedMode& mode) {
   return {{"frequency_hz", json_of(mode.frequency_hz)},
           {"damping_ratio", json_of(mode.damping_ratio)},
+          {"at_tap", json_or_null(mode.at_tap)},
+          {"amplitude", mode.amplitude},
           {"standing", name(mode.standing)},
           {"why", mode.why},
           {"taps", mode.taps},
@@ -153,6 +160,8 @@ std::string json_of(const TapIdentification& found) {
             {"rate_error", found.question.rate_error},
             {"taps", Json::array()},
             {"modes", Json::array()},
+            {"others", Json::array()},
+            {"others_in_words", found.others},
             {"rayleigh", json_or_null(found.rayleigh)},
             {"sinusoid", json_or_null(found.sinusoid)},
             {"model", json_or_null(found.model)},
@@ -161,7 +170,7 @@ std::string json_of(const TapIdentification& found) {
     json["taps"].push_back(json_of(tap));
   }
   for (const analysis::RepeatedMode& mode : found.modes) {
-    json["modes"].push_back(json_of(mode));
+    json[mode.standing == analysis::Standing::agreed ? "modes" : "others"].push_back(json_of(mode));
   }
   return json.dump(2);
 }

@@ -19,34 +19,57 @@ std::string interval(const Estimate& estimate) {
 }
 
 void print_taps(const TapIdentification& found) {
-  fmt::print("{} taps ({}), {:g} to {:g} Hz\n\n", found.taps.size(), name(found.question.quantity),
-             found.band.low_hz, found.band.high_hz);
-  fmt::print("  tap  at_s      decay_s  agreed  explained  recording\n");
+  fmt::print("\n  tap  at_s      decay_s  modes  explained  recording\n");
   for (std::size_t i = 0; i < found.taps.size(); ++i) {
     const IdentifiedTap& tap = found.taps[i];
     const auto agreed =
         std::ranges::count(tap.modes.modes, Standing::agreed, &analysis::TapMode::standing);
-    fmt::print("  {:>3}  {:<8.3f}  {:>7.3f}  {:>6}  {:>7.1f} %  {}, {}\n", i + 1, tap.time_s,
+    fmt::print("  {:>3}  {:<8.3f}  {:>7.3f}  {:>5}  {:>7.1f} %  {}, {}\n", i + 1, tap.time_s,
                tap.decay.duration_s(), agreed, 100.0 * tap.modes.fit.explained, tap.file,
                tap.channel);
   }
 }
 
-void print_modes(const TapIdentification& found) {
+std::string note_of(const analysis::RepeatedMode& mode) {
+  switch (mode.standing) {
+    case Standing::agreed:
+      return mode.at_tap ? fmt::format("at rest; at a tap {:.6g} Hz, {:.3g}",
+                                       mode.at_tap->frequency_hz, mode.at_tap->damping_ratio)
+                         : mode.why;
+    case Standing::line:
+      return "no mode: " + mode.why;
+    case Standing::combination:
+      return "no mode: " + mode.why;
+    case Standing::background:
+      return "hum or handling: " + mode.why;
+    case Standing::doubtful:
+      break;
+  }
+  return "doubtful: " + mode.why;
+}
+
+void print_modes(const TapIdentification& found, Listing listing) {
+  fmt::print("{} taps ({}), {:g} to {:g} Hz\n\n", found.taps.size(), name(found.question.quantity),
+             found.band.low_hz, found.band.high_hz);
   fmt::print(
-      "\nModes (95 % intervals {}{}):\n"
+      "Modes (95 % intervals {}{}):\n"
       "  frequency_hz                     damping_ratio                    taps\n",
       found.taps.size() > 1 ? "over taps" : "of this tap's noise",
       found.question.rate_error > 0.0
           ? fmt::format(", and of a rate wrong by {:g} %", 100.0 * found.question.rate_error)
           : "");
   for (const analysis::RepeatedMode& mode : found.modes) {
-    fmt::print("  {:>9.3f}  {:<20}  {:>9.5f}  {:<20}  {:>2} of {}{}\n", mode.frequency_hz.value,
+    if (mode.standing != Standing::agreed && listing == Listing::modes) {
+      continue;
+    }
+    const std::string note = note_of(mode);
+    fmt::print("  {:>9.3f}  {:<20}  {:>9.5f}  {:<20}  {:>2} of {}{}{}\n", mode.frequency_hz.value,
                interval(mode.frequency_hz), mode.damping_ratio.value, interval(mode.damping_ratio),
                mode.standing == Standing::agreed ? mode.agreed : mode.taps, found.taps.size(),
-               mode.standing == Standing::agreed ? mode.why.empty() ? "" : "  " + mode.why
-               : mode.standing == Standing::line ? "  no mode: " + mode.why
-                                                 : "  doubtful: " + mode.why);
+               note.empty() ? "" : "  ", note);
+  }
+  for (const std::string& other : found.others) {
+    fmt::print("  {}{}\n", other, listing == Listing::modes ? " (--all lists them)" : "");
   }
 }
 
@@ -135,9 +158,8 @@ void print_model(const TapIdentification& found, const ModelComparison& model) {
 }
 }  // namespace
 
-void print(const TapIdentification& found) {
-  print_taps(found);
-  print_modes(found);
+void print(const TapIdentification& found, Listing listing) {
+  print_modes(found, listing);
   if (found.rayleigh) {
     print_rayleigh(*found.rayleigh);
   }
@@ -152,6 +174,8 @@ void print(const TapIdentification& found) {
         "\nThe model holds its fixations rigidly; their stiffness is identified where they are on "
         "springs_n_per_m.\n");
   }
+  print_taps(found);
+  fmt::print("{}", found.remarks.empty() ? "" : "\n");
   for (const std::string& remark : found.remarks) {
     fmt::print("  {}\n", remark);
   }

@@ -5,14 +5,18 @@
 #include "analysis/report/figures/figure.hpp"
 #include "runner/laboratory/identify/tap_identification.hpp"
 namespace tapstudy::runner {
-// Prints taps, modes, damping, sinusoid, the model beside it, and remarks to stdout.
-void print(const TapIdentification& found);
+// Prints modes, damping, sinusoid, the model beside it, taps and remarks to stdout. What is no mode
+// for certain is summed up, or with Listing::all shown.
+enum class Listing { modes, all };
+void print(const TapIdentification& found, Listing listing);
 
 // The results as keys of a protocol, with intervals as comments: the whole material under
 // `materials` if a stimulus was named, else `damping` alone; under `rendering` the sinusoid where
-// its force is known. Damping is Rayleigh's where it fits, else a ratio a mode: of the model's
-// modes inside the band, those that were not measured get a ratio by linear interpolation over
-// frequency. Where springs were found, the plate's `fixations`, whole, under `plates`.
+// its force is known. Damping is Rayleigh's where it fits. Ratios stand beside the frequencies at
+// which they were found; as `modal_ratios`, which go to the model's modes in order, they are
+// offered where a model says which mode is which: up to the last mode that was measured, those
+// between by linear interpolation over frequency, which a comment says. Where springs were found,
+// the plate's `fixations`, whole, under `plates`.
 std::string yaml_of(const TapIdentification& found);
 
 // One of a protocol's fixations, as it is read: {region: ...}. is_of_box: of a plate, not a

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -77,36 +78,48 @@ double interpolated(const std::vector<RatioAt>& known, double frequency_hz) {
   return below.ratio + share * (above->ratio - below.ratio);
 }
 
-// Lines do not decay; neither may a ratio that noise made negative feed energy into a mode.
-double usable(double ratio) {
-  return std::max(ratio, 0.0);
+const analysis::RepeatedMode& mode_of(const TapIdentification& found, std::size_t measured) {
+  return found.modes[found.agreed[measured]];
 }
 
-std::vector<double> ratios_of_measured(const TapIdentification& found) {
-  std::vector<double> ratios;
+// Every listed mode's ratio beside its frequency, as comments.
+std::string ratios_found(const TapIdentification& found, const std::string& indent) {
+  std::string text =
+      fmt::format("{}# damping ratios, at the frequencies where they were found:\n", indent);
   for (const std::size_t i : found.agreed) {
-    ratios.push_back(usable(found.modes[i].damping_ratio.value));
+    const analysis::RepeatedMode& mode = found.modes[i];
+    text +=
+        fmt::format("{}#   {:.6g} Hz: {:.5g}  {}{}\n", indent, mode.frequency_hz.value,
+                    mode.damping_ratio.value, comment(mode.damping_ratio).substr(2),
+                    mode.at_tap ? fmt::format("; at rest, at a tap {:.6g} Hz: {:.3g}",
+                                              mode.at_tap->frequency_hz, mode.at_tap->damping_ratio)
+                                : "");
   }
-  return ratios;
+  return text;
 }
 
-// One for each of the model's modes inside the band.
-std::vector<double> ratios_of_model(const TapIdentification& found, const ModelComparison& model) {
-  const double factor =
-      std::sqrt(model.update->youngs_modulus_pa.value / model.material->youngs_modulus_pa);
+// The ratios of the model's modes, in order, up to the last one that was measured.
+struct ModelRatios {
+  std::vector<double> ratios;
+  std::vector<std::size_t> interpolated;  // numbers of modes, from 1
+};
+ModelRatios ratios_of_model(const TapIdentification& found, const ModelComparison& model) {
   std::vector<RatioAt> known;
+  std::size_t last = 0;
   for (const analysis::MatchedMode& one : model.update->matched) {
-    known.push_back({factor * model.frequencies_hz[one.model],
-                     usable(found.modes[found.agreed[one.measured]].damping_ratio.value)});
+    known.push_back(
+        {model.frequencies_hz[one.model], mode_of(found, one.measured).damping_ratio.value});
+    last = std::max(last, one.model);
   }
   std::ranges::sort(known, {}, &RatioAt::frequency_hz);  // shapes may match modes crosswise
-  std::vector<double> ratios;
-  for (const double frequency_hz : model.frequencies_hz) {
-    if (factor * frequency_hz <= model.band_limit_hz) {
-      ratios.push_back(interpolated(known, factor * frequency_hz));
+  ModelRatios of_model;
+  for (std::size_t i = 0; i <= last; ++i) {
+    of_model.ratios.push_back(interpolated(known, model.frequencies_hz[i]));
+    if (!std::ranges::count(model.update->matched, i, &analysis::MatchedMode::model)) {
+      of_model.interpolated.push_back(i + 1);
     }
   }
-  return ratios;
+  return of_model;
 }
 
 std::string listed(const std::vector<double>& ratios) {
@@ -117,33 +130,61 @@ std::string listed(const std::vector<double>& ratios) {
   return fmt::format("{{modal_ratios: [{}], further_ratio: {:.5g}}}", list, ratios.back());
 }
 
-std::string modal(const TapIdentification& found) {
-  const bool has_model = found.model && found.model->update;
-  const std::vector<double> of_model =
-      has_model ? ratios_of_model(found, *found.model) : std::vector<double>{};
-  return listed(of_model.empty() ? ratios_of_measured(found) : of_model);
+// Set where a model says which of its modes was measured. One that fits nearly as well with other
+// modes does not say it.
+std::optional<ModelRatios> modal(const TapIdentification& found) {
+  if (!found.model || !found.model->update || found.model->update->rival_pa ||
+      found.model->update->matched.empty()) {
+    return std::nullopt;
+  }
+  return ratios_of_model(found, *found.model);
 }
 
-// Precondition: at least one mode is agreed.
+std::string caution_of(const std::optional<ModelRatios>& by_mode, const std::string& indent) {
+  if (!by_mode) {
+    return fmt::format(
+        "{0}# modal_ratios are not offered: they go to the model's modes in order, and which mode\n"
+        "{0}# is which is known where --protocol and --stimulus name a model that matches\n",
+        indent);
+  }
+  if (by_mode->interpolated.empty()) {
+    return {};
+  }
+  return fmt::format("{}# modal_ratios of mode {} interpolated: not measured\n", indent,
+                     fmt::join(by_mode->interpolated, ", "));
+}
+
+// Precondition: at least one mode is listed.
 std::string damping_of(const TapIdentification& found, const std::string& indent) {
+  const std::string ratios = ratios_found(found, indent);
   const auto& rayleigh = found.rayleigh;
   if (!rayleigh) {
-    const Estimate& only = found.modes[found.agreed.front()].damping_ratio;
-    return fmt::format("{0}{1}\n{0}damping: {{ratio: {2:.5g}}}\n", indent, comment(only),
-                       usable(only.value));
+    return fmt::format("{}{}damping: {{ratio: {:.5g}}}\n", ratios, indent,
+                       mode_of(found, 0).damping_ratio.value);
   }
+  const auto by_mode = modal(found);
   const std::string by_rayleigh = fmt::format("{{alpha_per_s: {:.5g}, beta_s: {:.5g}}}",
                                               rayleigh->alpha_per_s.value, rayleigh->beta_s.value);
-  const std::string by_mode = modal(found);
-  const auto& first = rayleigh->fits() ? by_rayleigh : by_mode;
-  const auto& second = rayleigh->fits() ? by_mode : by_rayleigh;
-  return fmt::format(
-      "{0}# alpha_per_s {1}\n{0}# beta_s {2}\n{0}# Rayleigh's misfit of a ratio: {3:.1f} % at "
-      "most\n"
-      "{0}damping: {4}\n{0}# or damping: {5}\n",
-      indent, comment(rayleigh->alpha_per_s).substr(2), comment(rayleigh->beta_s).substr(2),
-      100.0 * rayleigh->largest_misfit, first, second);
+  const bool fits = rayleigh->fits();
+  std::string text =
+      ratios + caution_of(by_mode, indent) +
+      fmt::format(
+          "{0}# alpha_per_s {1}\n{0}# beta_s {2}\n{0}# Rayleigh's misfit of a ratio: "
+          "{3:.1f} % at most{4}\n",
+          indent, comment(rayleigh->alpha_per_s).substr(2), comment(rayleigh->beta_s).substr(2),
+          100.0 * rayleigh->largest_misfit, fits ? "" : ": it does not fit");
+  if (fits) {
+    text += fmt::format("{}damping: {}\n", indent, by_rayleigh);
+  }
+  if (by_mode) {
+    text += fmt::format("{}{}damping: {}\n", indent, fits ? "# or " : "", listed(by_mode->ratios));
+  }
+  if (!fits) {
+    text += fmt::format("{}# {}damping: {}\n", indent, by_mode ? "or " : "", by_rayleigh);
+  }
+  return text;
 }
+
 std::string springs_of(const IdentifiedSprings& springs, const core::Shape& shape) {
   std::string text = fmt::format(
       "plates:\n  {}:\n    # springs: {:.4g} times the protocol's, {}\n    fixations:\n",
@@ -175,9 +216,8 @@ std::string cautions_of(const analysis::ModelUpdate& update, std::size_t found) 
   std::string text;
   if (update.matched.size() < found) {
     text += fmt::format(
-        "# CAUTION: only {} of the {} modes found match the model; Young's modulus rests on these, "
-        "and\n# modal_ratios of other modes are those of their neighbours. Is the plate as the "
-        "protocol says?\n",
+        "# CAUTION: only {} of the {} modes found match the model; Young's modulus rests on these. "
+        "Is\n# the plate as the protocol says?\n",
         update.matched.size(), found);
   }
   if (update.rival_pa) {
@@ -203,11 +243,14 @@ std::string yaml_of(const TapIdentification& found) {
       "# tapstudy identify: {} taps, {}, {:g} to {:g} Hz. To be pasted over the keys of the same "
       "name.\n",
       found.taps.size(), name(found.question.quantity), found.band.low_hz, found.band.high_hz);
+  for (const std::string& other : found.others) {
+    text += fmt::format("# not listed: {}\n", other);
+  }
   if (found.sinusoid) {
     text += sinusoid_of(*found.sinusoid, found.loop_rate_hz);
   }
   if (found.agreed.empty()) {
-    return text + "# no mode was found by both methods\n";
+    return text + "# no mode was found for certain\n";
   }
   if (!found.model) {
     return text + damping_of(found, "");

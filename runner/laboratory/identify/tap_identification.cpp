@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/modal/modes/mode_kinds.hpp"
 #include "analysis/modal/modes/mode_shapes.hpp"
 #include "core/error.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "runner/laboratory/identify/fits_over_taps.hpp"
 #include "runner/laboratory/identify/measurement_files.hpp"
+#include "runner/laboratory/identify/modes_of_taps.hpp"
 namespace tapstudy::runner {
 namespace {
 void widen(double factor, analysis::Interval& interval) {
@@ -80,20 +82,15 @@ class Identifier {
     for (const std::string& file : result_.question.recordings) {
       files.push_back(read_measured_file(file, result_.question));
     }
-    const double slowest_hz = rate_of(*std::ranges::min_element(files, {}, rate_of));
     check_playback_rate(files);
-    result_.band = modal_band(result_.question, slowest_hz,
-                              protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt);
-    int impacts = 0;
+    check_band(result_.question, rate_of(*std::ranges::min_element(files, {}, rate_of)));
     for (const MeasuredFile& file : files) {
       add_remarks_of(file);
-      impacts += add(file, impacts);
+      impacts_ += add(file, impacts_);
     }
-    if (result_.taps.empty()) {
-      throw core::InvalidInput{fmt::format("{}", fmt::join(result_.remarks, "\n"))};
-    }
-    give_speeds(impacts);
-    give_places(impacts);
+    identify_modes();
+    give_speeds(impacts_);
+    give_places(impacts_);
     sum_up();
     include_rate_error(result_.question.rate_error, result_);
     return std::move(result_);
@@ -122,29 +119,42 @@ class Identifier {
   // Returns the number of impacts in the file; `before` is the number in earlier recordings.
   int add(const MeasuredFile& file, int before) {
     const analysis::FoundTaps found = find_taps(file, result_.question.finding);
-    for (const std::string& remark : found.remarks) {
-      result_.remarks.push_back(file.channels.front().file + ": " + remark);
+    for (const analysis::TapRemark& remark : found.remarks) {
+      tap_remarks_.add(file.channels.front().file, remark);
     }
     std::vector<analysis::Resting> resting;  // of each channel
     std::ranges::transform(file.channels, std::back_inserter(resting), analysis::resting);
+    std::size_t rests_from = 0;
     for (const analysis::Tap& tap : found.taps) {
       hook_(fmt::format("tap {} of {}", tap.impact, file.channels.front().file));
       const auto force = file.force ? std::optional{impact_force(file, tap)} : std::nullopt;
       if (force && force->is_clipped) {
-        result_.remarks.push_back(fmt::format("{}: the force of the tap at {:.3f} s is clipped",
-                                              file.force->file, force->centre_s));
+        tap_remarks_.add(file.force->file, {force->centre_s, "the force is clipped", {}});
       }
       for (std::size_t i = 0; i < file.channels.size(); ++i) {
         if (add(file.channels[i], resting[i], tap)) {
           result_.taps.back().impact = before + tap.impact;
           result_.taps.back().force = force;
+          result_.taps.back().rest = rest_before(file.channels[i], rests_from, tap.onset);
         }
       }
+      rests_from = tap.end;
     }
     return found.impacts;
   }
 
-  // A tap that is too short for the band is left out with a remark.
+  // The last half second of rest, but for what may be the beginning of the impact.
+  static analysis::FreeDecay rest_before(const analysis::Recording& recording, std::size_t from,
+                                         std::size_t onset) {
+    constexpr double longest_s = 0.5;
+    constexpr double guard_s = 0.005;
+    const auto samples = [&](double s) { return static_cast<std::size_t>(s * recording.rate_hz); };
+    const std::size_t end = onset - std::min(onset, samples(guard_s));
+    const std::size_t begin = std::max(from, end - std::min(end, samples(longest_s)));
+    return between(recording, std::min(begin, end), end);
+  }
+
+  // A channel that shows nothing is left out with a remark.
   bool add(const analysis::Recording& recording, const analysis::Resting& resting,
            const analysis::Tap& tap) {
     IdentifiedTap one;
@@ -155,25 +165,34 @@ class Identifier {
     one.noise_rms = resting.noise_rms;
     one.decay = between(recording, tap.begin, tap.end);
     if (is_dead(one.decay.samples)) {
-      result_.remarks.push_back(fmt::format("{}, {}: does not change in the tap at {:.3f} s",
-                                            recording.file, recording.channel, one.time_s));
+      tap_remarks_.add(recording.file,
+                       {one.time_s, fmt::format("{} does not change", recording.channel), {}});
       return false;
     }
     one.decay.samples.array() -= one.decay.samples.mean();
-    try {
-      one.modes = analysis::identify_modes(one.decay, {result_.band});
-    } catch (const core::InvalidInput& error) {
-      result_.remarks.push_back(fmt::format("{}: the tap at {:.3f} s is left out: {}",
-                                            recording.file, one.time_s, error.what()));
-      return false;
-    }
     // not by its mean: what stopped has been accelerated
     one.whole = between(recording, tap.onset, tap.end);
     one.whole.samples.array() -= resting.value;
-    one.sinusoid = analysis::fit_decaying_sinusoid(
-        one.whole, band_of_sinusoid(result_.band, recording.rate_hz));
     result_.taps.push_back(std::move(one));
     return true;
+  }
+
+  void identify_modes() {
+    if (!result_.taps.empty()) {
+      result_.band = modal_band(result_.question, result_.taps,
+                                protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt,
+                                result_.remarks);
+      hook_("modes");
+      result_.modes = modes_over_all(result_.band, result_.taps, tap_remarks_);
+    }
+    if (result_.taps.empty()) {
+      add_remarks(tap_remarks_.sentences(impacts_));
+      throw core::InvalidInput{fmt::format("{}", fmt::join(result_.remarks, "\n"))};
+    }
+    for (IdentifiedTap& tap : result_.taps) {
+      tap.sinusoid = analysis::fit_decaying_sinusoid(
+          tap.whole, band_of_sinusoid(result_.band, tap.whole.rate_hz));
+    }
   }
 
   static void check_rows(const std::string& file, const char* what, std::size_t rows, int impacts) {
@@ -246,9 +265,8 @@ class Identifier {
   }
 
   void sum_up() {
-    hook_("all taps together");
-    result_.modes = modes_over_all(result_.band, result_.taps, result_.remarks);
-    add_remarks(remarks_on_residuals(result_.taps));
+    remark_on_residuals(result_.taps, tap_remarks_);
+    add_remarks(tap_remarks_.sentences(impacts_));
     add_remarks(remarks_on_resolution(result_.taps));
     add_remarks(remarks_on_scatter(result_.modes));
     std::vector<analysis::MeasuredRatio> ratios;
@@ -261,9 +279,10 @@ class Identifier {
                           mode.degrees_of_freedom});
       }
     }
+    result_.others = analysis::summaries_of_others(result_.modes);
     result_.rayleigh = analysis::fit_rayleigh(ratios);
     if (result_.agreed.empty()) {
-      result_.remarks.emplace_back("no mode was found by both methods");
+      result_.remarks.emplace_back("no mode was found for certain");
     }
     result_.sinusoid = sinusoid_law(
         result_, protocol_ ? std::optional{protocol_->rendering.finger} : std::nullopt);
@@ -302,6 +321,8 @@ class Identifier {
   }
 
   TapIdentification result_;
+  TapRemarks tap_remarks_;
+  int impacts_{0};
   std::optional<protocols::Protocol> protocol_;
   core::ProgressHook hook_;
 };

@@ -21,7 +21,7 @@ struct TapQuestion {
   analysis::Quantity quantity{analysis::Quantity::acceleration};
   double si_per_unit{1.0};  // from the recordings' unit to m/s², m/s or m
   analysis::TapFinding finding;
-  std::optional<analysis::Band> band;  // unset: 10 Hz to the protocol's band limit or 1000 Hz
+  std::optional<analysis::Band> band;  // unset: it follows the recording
   std::string speeds;  // CSV with a column speed_m_s, a row for each tap; may be empty
   std::string places;  // CSV with columns x_m and y_m, likewise; may be empty
   std::optional<Eigen::Vector2d> at_m;  // where was tapped, plate frame: to be played back
@@ -45,6 +45,7 @@ struct IdentifiedTap {
   double noise_rms{};         // of the recording
   analysis::FreeDecay decay;  // in the recording's unit, about its mean
   analysis::FreeDecay whole;  // from the impact on
+  analysis::FreeDecay rest;   // before the impact, since the tap before; may be empty
   analysis::TapModes modes;
   std::optional<analysis::FittedSinusoid> sinusoid;
   std::optional<double> speed_m_s;
@@ -67,7 +68,8 @@ struct TapIdentification {
   analysis::Band band;
   std::vector<IdentifiedTap> taps;
   std::vector<analysis::RepeatedMode> modes;
-  std::vector<std::size_t> agreed;                // indices into modes
+  std::vector<std::size_t> agreed;                // indices into modes: those that are listed
+  std::vector<std::string> others;                // sentences: what is not listed, one a kind
   std::optional<analysis::RayleighFit> rayleigh;  // of the agreed modes
   std::optional<SinusoidLaw> sinusoid;
   std::optional<ModelComparison> model;

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/modal/decay/decay_band.hpp"
 #include "analysis/modal/modes/assignment.hpp"
 #include "analysis/modal/modes/close_modes.hpp"
+#include "analysis/modal/modes/distinct_modes.hpp"
+#include "analysis/modal/modes/mode_kinds.hpp"
 #include "analysis/modal/modes/mode_shapes.hpp"
 #include "analysis/modal/modes/model_matching.hpp"
 #include "analysis/modal/modes/repeated_modes.hpp"
@@ -273,6 +276,210 @@ TEST_CASE("a mode whose frequency falls with its amplitude is not taken for two"
   REQUIRE(agreed_near(by_taps, low_hz).size() == 1);
   const ModesOfTaps found = resolve_close_modes(decays, impacts, sought, by_taps);
   CHECK(agreed_near(found, low_hz).size() == 1);
+}
+
+namespace {
+// A tap of a mode whose frequency falls by a share at an amplitude of 1, as joints make it, with
+// what real recordings add: hum, the hand's slow movement, noise that falls over frequency, an
+// echo.
+struct Faults {
+  double glide{0.004};
+  double hum{0.02};
+  double handling{0.04};
+  double coloured{0.01};
+  double reflection{0.12};
+};
+constexpr double gliding_hz = 331.0;
+constexpr double gliding_ratio = 0.008;
+constexpr double taps_rate_hz = 4000.0;
+
+void add_gliding(double glide, double strength, double begin_s, FreeDecay& decay) {
+  const double omega = 2.0 * std::numbers::pi * gliding_hz;
+  double phase_rad = 0.0;
+  for (Eigen::Index n = std::lround(begin_s * taps_rate_hz); n < decay.samples.size(); ++n) {
+    const double t_s = static_cast<double>(n) / taps_rate_hz - begin_s;
+    const double amplitude = strength * std::exp(-gliding_ratio * omega * t_s);
+    decay.samples[n] += amplitude * std::sin(phase_rad);
+    phase_rad += omega * (1.0 - glide * amplitude) / taps_rate_hz;
+  }
+}
+
+FreeDecay faulty_tap(const Faults& faults, double strength, core::Rng& rng) {
+  FreeDecay decay{taps_rate_hz, Eigen::VectorXd::Zero(1000)};
+  add_gliding(faults.glide, strength, 0.0, decay);
+  add_gliding(faults.glide, faults.reflection * strength, 0.011, decay);
+  double brown = 0.0;
+  const double turn = 2.0 * std::numbers::pi * rng.uniform();
+  for (Eigen::Index n = 0; n < decay.samples.size(); ++n) {
+    const double t_s = static_cast<double>(n) / taps_rate_hz;
+    brown = 0.98 * brown + 0.2 * faults.coloured * rng.normal();
+    decay.samples[n] += brown + faults.hum * std::sin(2.0 * std::numbers::pi * 50.0 * t_s + turn) +
+                        faults.handling * std::sin(2.0 * std::numbers::pi * 9.0 * t_s + 2.0 * turn);
+  }
+  return decay;
+}
+
+struct FaultyTaps {
+  std::vector<FreeDecay> decays;
+  std::vector<int> impacts;
+  ModesOfTaps found;
+};
+FaultyTaps identified(std::vector<FreeDecay> decays) {
+  FaultyTaps taps{std::move(decays), {}, {}};
+  for (const FreeDecay& decay : taps.decays) {
+    taps.impacts.push_back(static_cast<int>(taps.impacts.size()));
+    taps.found.taps.push_back(identify_modes(decay, {sought}));
+  }
+  const ModesOfTaps alone{taps.found.taps, modes_over_taps(taps.found.taps, taps.impacts)};
+  taps.found = resolve_close_modes(taps.decays, taps.impacts, sought, alone);
+  return taps;
+}
+
+// What is listed, as a recording's taps are treated.
+std::vector<RepeatedMode> listed(FaultyTaps taps, const std::vector<FreeDecay>& rests) {
+  const double later_s = settled_after_s(taps.decays, taps.impacts, sought, taps.found);
+  if (later_s > 0.0) {
+    std::vector<FreeDecay> later;
+    for (const FreeDecay& decay : taps.decays) {
+      later.push_back(begun_later(decay, later_s));
+    }
+    taps = identified(std::move(later));
+  }
+  std::vector<RepeatedMode> modes = distinct_modes(taps.decays, taps.impacts, sought, taps.found);
+  mark_background(rests, modes);
+  judge_certainty(taps.decays.front().duration_s(), modes);
+  std::erase_if(modes, [](const RepeatedMode& mode) { return mode.standing != Standing::agreed; });
+  return modes;
+}
+}  // namespace
+
+TEST_CASE("a mode that follows its amplitude is one mode, at rest, whatever else is recorded",
+          "[analysis][modal]") {
+  Faults faults;
+  SECTION("with faults of a usual recording") {}
+  SECTION("with twice as large ones") {
+    faults = {0.008, 0.04, 0.08, 0.02, 0.24};
+  }
+  core::Rng rng{6};
+  std::vector<FreeDecay> decays;
+  std::vector<FreeDecay> rests;
+  for (int tap = 0; tap < 6; ++tap) {
+    decays.push_back(faulty_tap(faults, 0.45 + 0.1 * tap, rng));
+    rests.push_back(faulty_tap(faults, 0.0, rng));
+  }
+  const std::vector<RepeatedMode> modes = listed(identified(std::move(decays)), rests);
+  for (const RepeatedMode& mode : modes) {
+    UNSCOPED_INFO(mode.frequency_hz.value << " Hz, " << mode.damping_ratio.value << " "
+                                          << mode.why);
+  }
+  REQUIRE(modes.size() == 1);
+  INFO(modes.front().frequency_hz.interval.low << " to "
+                                               << modes.front().frequency_hz.interval.high);
+  // a rate's error is not in these intervals
+  CHECK(modes.front().frequency_hz.value == Approx(gliding_hz).epsilon(5e-4));
+  CHECK(modes.front().damping_ratio.value == Approx(gliding_ratio).epsilon(0.05));
+  REQUIRE(modes.front().at_tap);
+  CHECK(modes.front().at_tap->frequency_hz < gliding_hz * (1.0 - 0.2 * faults.glide));
+}
+
+TEST_CASE("two modes that all taps tell apart are not taken for one that follows its amplitude",
+          "[analysis][modal]") {
+  const double apart_hz = GENERATE(1.0, 2.0);
+  const std::vector<Channel> channels = channels_of({low_hz, ratio}, {low_hz + apart_hz, ratio});
+  std::vector<FreeDecay> decays;
+  std::vector<int> impacts;
+  std::vector<TapModes> alone;
+  core::Rng rng{3};
+  for (const Channel& channel : channels) {
+    FreeDecay decay = testing::planted_decay(channel.modes, sampled_hz, ring_s);
+    const double noise =
+        testing::noise_for(testing::planted_decay(channel.modes, sampled_hz, 0.2), 30.0);
+    for (double& sample : decay.samples) {
+      sample += noise * rng.normal();
+    }
+    decays.push_back(decay);
+    impacts.push_back(channel.impact);
+    alone.push_back(identify_modes(decay, {sought}));
+  }
+  ModesOfTaps found =
+      resolve_close_modes(decays, impacts, sought, {alone, modes_over_taps(alone, impacts)});
+  REQUIRE(agreed_near(found, low_hz).size() == 2);
+  CHECK(settled_after_s(decays, impacts, sought, found) == 0.0);
+  found.modes = distinct_modes(decays, impacts, sought, found);
+  CHECK(agreed_near(found, low_hz).size() == 2);
+}
+
+namespace {
+RepeatedMode certain_mode(double frequency_hz, double damping_ratio, double amplitude) {
+  RepeatedMode mode;
+  mode.frequency_hz = t_estimate(frequency_hz, 1e-4 * frequency_hz, 10.0);
+  mode.damping_ratio = t_estimate(damping_ratio, 0.02 * damping_ratio, 10.0);
+  mode.amplitude = amplitude;
+  mode.standing = Standing::agreed;
+  return mode;
+}
+}  // namespace
+
+TEST_CASE("what is not certain is no mode, and slow movement is background", "[analysis][modal]") {
+  std::vector<RepeatedMode> modes{certain_mode(5.0, 0.02, 1.0), certain_mode(60.0, 0.02, 1.0),
+                                  certain_mode(90.0, 0.02, 1.0), certain_mode(200.0, 0.02, 1.0)};
+  modes[1].damping_ratio.interval.low = -1e-6;
+  modes[2].frequency_hz.interval = {85.0, 95.0};
+  judge_certainty(0.5, modes);  // 2.5 periods of 5 Hz
+  CHECK(modes[0].standing == Standing::background);
+  CHECK(modes[1].standing == Standing::doubtful);
+  CHECK(modes[2].standing == Standing::doubtful);
+  CHECK(modes[3].standing == Standing::agreed);
+  const std::vector<std::string> others = summaries_of_others(modes);
+  REQUIRE(others.size() == 2);  // one sentence a kind
+  CHECK_THAT(others[0], Contains("2 components from 60 to 90 Hz: doubtful"));
+  CHECK_THAT(others[1], Contains("1 component below 5 Hz: hum or handling"));
+}
+
+TEST_CASE("products of two motions are marked by their frequency and by their decay",
+          "[analysis][modal]") {
+  const double fast = 0.01;  // of 45.9 Hz: the product's rate is the sum of both
+  const double slow = 0.02;
+  const auto product = [&](double sign, double factor) {
+    const double hz = 45.9 + sign * 6.9;
+    return certain_mode(hz, factor * (45.9 * fast + 6.9 * slow) / hz, 0.1);
+  };
+  std::vector<RepeatedMode> modes{certain_mode(6.9, slow, 1.0),  product(-1.0, 1.0),
+                                  certain_mode(45.9, fast, 1.0), product(1.0, 3.0),
+                                  certain_mode(91.8, fast, 0.1), certain_mode(137.7, fast, 0.9)};
+  mark_combinations(modes);
+  CHECK(modes[1].standing == Standing::combination);
+  CHECK_THAT(modes[1].why, Contains("45.9 Hz - 6.9 Hz"));
+  CHECK(modes[3].standing == Standing::agreed);  // decays three times as fast as a product does
+  CHECK(modes[4].standing == Standing::combination);
+  CHECK(modes[5].standing == Standing::agreed);  // as strong as what would make it
+}
+
+TEST_CASE("what is as strong at rest as in the taps is no answer to them", "[analysis][modal]") {
+  FreeDecay rest{1000.0, Eigen::VectorXd(400)};
+  for (Eigen::Index n = 0; n < rest.samples.size(); ++n) {
+    rest.samples[n] =
+        0.02 * std::sin(2.0 * std::numbers::pi * 50.0 * static_cast<double>(n) / 1000.0 + 1.0);
+  }
+  CHECK(amplitude_at(50.0, rest) == Approx(0.02).epsilon(0.01));
+  std::vector<RepeatedMode> modes{certain_mode(50.0, 0.01, 0.03), certain_mode(120.0, 0.01, 0.03)};
+  // hum of 50 Hz is not near 120 Hz
+  mark_background({rest, rest, rest}, modes);
+  CHECK(modes[0].standing == Standing::background);
+  CHECK(modes[1].standing == Standing::agreed);
+}
+
+TEST_CASE("the band ends above the highest mode that is not weak, however soon it dies away",
+          "[analysis][modal]") {
+  core::Rng rng{7};
+  FreeDecay decay = testing::planted_decay(
+      {{{400.0, 0.01}, 1.0}, {{2500.0, 0.02}, 0.3}, {{5000.0, 0.01}, 0.001}}, 16'000.0, 0.5);
+  testing::add_noise(decay, 40.0, rng);
+  const double highest_hz = highest_peak_hz({decay, decay, decay}, 10.0);
+  CHECK(highest_hz > 2400.0);
+  CHECK(highest_hz < 2800.0);
+  const EnergyOutside outside = energy_outside({decay}, {10.0, 1000.0}, 10.0);
+  CHECK(outside.peak_hz == Approx(2500.0).epsilon(0.02));
 }
 
 namespace {

@@ -1,0 +1,30 @@
+#pragma once
+#include <vector>
+
+#include "analysis/modal/decay/free_decay.hpp"
+namespace tapstudy::analysis {
+// What is 26 dB weaker than the strongest mode at the beginning of a decay is not sought.
+inline constexpr double weakest_sought = 0.05;
+
+// The highest frequency at which the beginnings of these decays (10 ms, so that modes that die away
+// soon count as much as those that ring on) have a spectral peak, no weaker than weakest_sought
+// times the largest, and three times what is left there at the end of the decay. Of several decays
+// the 80 % quantile: a click in one of them is not the structure's. 0 if none has a peak. The
+// decays are not empty.
+double highest_peak_hz(const std::vector<FreeDecay>& decays, double low_hz);
+
+// The energy of the decays beside a band.
+struct EnergyOutside {
+  double share{};    // of all above low_hz
+  double peak_hz{};  // where most of it is
+};
+EnergyOutside energy_outside(const std::vector<FreeDecay>& decays, const Band& band, double low_hz);
+
+// Parts of a wide band in which modes are sought one after another: up to 1000 Hz, then octaves. A
+// fit's cost grows with the cube of what is in it.
+std::vector<Band> parts_of(const Band& band);
+// A decay until what it has in a part of the band has died away (no bin of 50 ms has thirty times
+// the power of the last 150 ms), and above 1000 Hz no longer than 1000 periods: what follows is
+// noise, which costs time and hides nothing.
+FreeDecay shortened_for(const Band& part, const FreeDecay& decay);
+}  // namespace tapstudy::analysis

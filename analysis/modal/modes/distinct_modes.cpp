@@ -1,0 +1,347 @@
+#include "analysis/modal/modes/distinct_modes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "analysis/modal/decay/decay_band.hpp"
+#include "analysis/modal/decay/resting_pole_fit.hpp"
+#include "analysis/statistics/quantiles.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+// What may belong to one mode lies within this share of its frequency or so many half-power
+// bandwidths of it: joints and cubic stiffness move frequencies by a few per cent.
+constexpr double reach_share = 0.04;
+constexpr double reach_bandwidths = 4.0;
+constexpr double most_reach = 0.15;
+constexpr double around_reach = 1.5;
+constexpr double least_bins = 24.0;
+constexpr double series_ratio = 1.6;
+constexpr double explains_as_much = 1.05;  // of the noise
+constexpr std::array<int, 5> numbers_of_terms{1, 2, 3, 4, 6};
+
+double centre_of(const RepeatedMode& mode) {
+  return mode.frequency_hz.value;
+}
+
+bool may_be_mode(const RepeatedMode& mode) {
+  return mode.standing == Standing::agreed || mode.standing == Standing::doubtful;
+}
+
+double reach_of(const RepeatedMode& mode) {
+  const double bandwidth_hz = 2.0 * std::abs(mode.damping_ratio.value) * centre_of(mode);
+  return std::min(most_reach * centre_of(mode),
+                  std::max(reach_share * centre_of(mode), reach_bandwidths * bandwidth_hz));
+}
+
+class Neighbourhood {
+ public:
+  Neighbourhood(const RepeatedMode& strongest, const std::vector<FreeDecay>& decays,
+                const std::vector<int>& impacts, const Band& band, const ModesOfTaps& found)
+      : strongest_{strongest}, found_{found}, reach_hz_{reach_of(strongest)} {
+    const double centre_hz = centre_of(strongest);
+    for (std::size_t i = 0; i < decays.size(); ++i) {
+      const FreeDecay decay = shortened_for({centre_hz, centre_hz}, decays[i]);
+      const double half_hz =
+          std::max(around_reach * reach_hz_, least_bins / 2.0 / decay.duration_s());
+      near_ = {std::max(band.low_hz, centre_hz - half_hz),
+               std::min(0.47 * decay.rate_hz, centre_hz + half_hz)};
+      decays_.push_back({band_spectrum(decay, near_), lines_in(found.taps[i], near_), impacts[i]});
+    }
+  }
+
+  bool holds(const RepeatedMode& mode) const {
+    return may_be_mode(mode) && std::abs(centre_of(mode) - centre_of(strongest_)) <= reach_hz_;
+  }
+
+  // The best single mode that follows its amplitude; unset if none settles.
+  std::optional<RestingFit> single(int most_terms = numbers_of_terms.back()) const {
+    std::optional<RestingFit> best;
+    for (const int terms : numbers_of_terms) {
+      if (terms > most_terms) {
+        break;
+      }
+      try {
+        RestingFit fit = fit_resting_poles(decays_, start_with(terms, best));
+        if (fit.has_converged && (!best || fit.criterion < best->criterion)) {
+          best = std::move(fit);
+        }
+      } catch (const core::InvalidInput&) {
+        break;
+      }
+    }
+    return best && is_here(*best) ? best : std::nullopt;
+  }
+
+  // The mode that all of it is; unset if it is not one.
+  std::optional<RepeatedMode> one_mode() const {
+    const std::vector<RepeatedMode> members = all_held();
+    const std::optional<RestingFit> best = single();
+    if (!best) {
+      return std::nullopt;
+    }
+    if (members.size() == 1 && best->poles.front().terms == 1) {
+      return std::nullopt;  // it is linear, and stays as the taps show it
+    }
+    if (best->criterion > criterion_of_several(members, *best)) {
+      return std::nullopt;
+    }
+    return as_repeated(*best);
+  }
+
+ private:
+  static std::vector<double> lines_in(const TapModes& tap, const Band& near) {
+    std::vector<double> lines;
+    std::ranges::copy_if(tap.lines_hz, std::back_inserter(lines),
+                         [&](double hz) { return near.holds(hz); });
+    for (const TapMode& mode : tap.modes) {
+      if (mode.standing == Standing::line && near.holds(mode.fitted.pole.frequency_hz)) {
+        lines.push_back(mode.fitted.pole.frequency_hz);
+      }
+    }
+    return lines;
+  }
+
+  std::vector<RepeatedMode> all_held() const {
+    std::vector<RepeatedMode> members;
+    std::ranges::copy_if(found_.modes, std::back_inserter(members),
+                         [&](const RepeatedMode& mode) { return holds(mode); });
+    return members;
+  }
+
+  // Others inside the band but beyond reach take part as linear modes.
+  std::vector<RestingPole> start_with(int terms, const std::optional<RestingFit>& before) const {
+    std::vector<RestingPole> start;
+    if (before) {
+      start = before->poles;
+    } else {
+      start.push_back({{centre_of(strongest_), std::max(1e-4, strongest_.damping_ratio.value)}, 1});
+      for (const RepeatedMode& mode : found_.modes) {
+        if (mode.standing == Standing::agreed && near_.holds(centre_of(mode)) && !holds(mode) &&
+            mode.damping_ratio.value > 0.0) {
+          start.push_back({{centre_of(mode), mode.damping_ratio.value}, 1});
+        }
+      }
+    }
+    start.front().terms = terms;
+    return start;
+  }
+
+  bool is_here(const RestingFit& fit) const {
+    const Pole& pole = fit.poles.front().pole;
+    return std::abs(pole.frequency_hz - centre_of(strongest_)) <= reach_hz_ &&
+           pole.damping_ratio > 0.0 && pole.damping_ratio < 0.5;
+  }
+
+  // As the taps show them each for itself, or, told apart, all together.
+  double criterion_of_several(const std::vector<RepeatedMode>& members,
+                              const RestingFit& single) const {
+    std::vector<std::vector<Pole>> own;
+    for (const TapModes& tap : found_.taps) {
+      std::vector<Pole> poles;
+      for (const FittedMode& fitted : tap.fit.modes) {
+        if (near_.holds(fitted.pole.frequency_hz)) {
+          poles.push_back(fitted.pole);
+        }
+      }
+      own.push_back(std::move(poles));
+    }
+    double least = std::numeric_limits<double>::infinity();
+    try {
+      const OwnPoles of_own = deviance_of_own(decays_, own);
+      least = schwarz(of_own.deviance, of_own.unknowns, decays_);
+    } catch (const core::InvalidInput&) {
+      least = std::numeric_limits<double>::infinity();  // more poles than the band can tell
+    }
+    std::vector<RestingPole> together;
+    for (const RepeatedMode& mode : found_.modes) {
+      if (mode.standing == Standing::agreed && near_.holds(centre_of(mode)) &&
+          mode.damping_ratio.value > 0.0) {
+        together.push_back({{centre_of(mode), mode.damping_ratio.value}, 1});
+      }
+    }
+    if (together.size() > 1 && members.size() > 1) {
+      try {
+        const RestingFit several = fit_resting_poles(decays_, together);
+        if (!may_be_series(members) || single.noise > explains_as_much * several.noise) {
+          least = std::min(least, several.criterion);
+        }
+      } catch (const core::InvalidInput&) {
+        return least;
+      }
+    }
+    return least;
+  }
+
+  // The first terms of one mode's series decay at rates of 1 to 2 or 3, at nearly one frequency.
+  static bool may_be_series(const std::vector<RepeatedMode>& members) {
+    for (const RepeatedMode& one : members) {
+      for (const RepeatedMode& other : members) {
+        const double faster_hz = one.damping_ratio.value * centre_of(one);
+        const double slower_hz = other.damping_ratio.value * centre_of(other);
+        if (one.standing == Standing::agreed && other.standing == Standing::agreed &&
+            faster_hz > series_ratio * slower_hz &&
+            std::abs(centre_of(one) - centre_of(other)) < faster_hz) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  RepeatedMode as_repeated(const RestingFit& fit) const {
+    const Pole& pole = fit.poles.front().pole;
+    const Pole errors = noise_errors(decays_, fit);
+    std::vector<double> frequencies_hz;
+    std::vector<double> ratios;
+    for (const Pole& one : without_each_impact(decays_, fit)) {
+      frequencies_hz.push_back(one.frequency_hz);
+      ratios.push_back(one.damping_ratio);
+    }
+    RepeatedMode mode = strongest_;
+    const double freedom = 2.0 * static_cast<double>(decays_.front().spectrum.values.size());
+    mode.frequency_hz =
+        jackknife_estimate(pole.frequency_hz, frequencies_hz, errors.frequency_hz, freedom);
+    mode.damping_ratio =
+        jackknife_estimate(pole.damping_ratio, ratios, errors.damping_ratio, freedom);
+    mode.degrees_of_freedom =
+        ratios.size() > 1 ? static_cast<double>(ratios.size()) - 1.0 : freedom;
+    mode.scatter_p.reset();
+    mode.why = {};
+    if (fit.poles.front().terms > 1) {
+      mode.at_tap = at_taps(fit);
+    }
+    mode.taps = static_cast<int>(decays_.size());
+    mode.agreed = static_cast<int>(
+        std::ranges::count_if(fit.seen, [](const SeenAtTap& seen) { return seen.share > 0.5; }));
+    mode.standing = 2 * mode.agreed >= mode.taps ? Standing::agreed : strongest_.standing;
+    return mode;
+  }
+
+  static AtTap at_taps(const RestingFit& fit) {
+    std::vector<double> frequencies_hz;
+    std::vector<double> ratios;
+    for (const SeenAtTap& seen : fit.seen) {
+      frequencies_hz.push_back(seen.pole.frequency_hz);
+      ratios.push_back(seen.pole.damping_ratio);
+    }
+    return {quantile(frequencies_hz, 0.5), quantile(ratios, 0.5)};
+  }
+
+  RepeatedMode strongest_;
+  const ModesOfTaps& found_;
+  double reach_hz_;
+  Band near_;
+  std::vector<NearbyDecay> decays_;
+};
+}  // namespace
+
+namespace {
+std::vector<RepeatedMode> by_strength(const std::vector<RepeatedMode>& modes) {
+  std::vector<RepeatedMode> sorted;
+  std::ranges::copy_if(modes, std::back_inserter(sorted), [](const RepeatedMode& mode) {
+    return may_be_mode(mode) && mode.damping_ratio.value > 0.0;
+  });
+  std::ranges::sort(sorted, std::ranges::greater{}, &RepeatedMode::amplitude);
+  return sorted;
+}
+}  // namespace
+
+FreeDecay begun_later(const FreeDecay& decay, double after_s) {
+  const auto skipped = std::min(static_cast<Eigen::Index>(std::lround(after_s * decay.rate_hz)),
+                                decay.samples.size());
+  return {decay.rate_hz, decay.samples.tail(decay.samples.size() - skipped)};
+}
+
+namespace {
+// A room's and a table's first reflections have come by then; later on weak modes are lost.
+constexpr std::array<double, 3> delays_s{0.0, 0.006, 0.012};
+constexpr double as_well = 1.15;
+constexpr double blow_s = 0.012;
+
+// For one mode, by the decays that begin so much later in turn.
+double settled_for(const RepeatedMode& mode, const std::vector<std::vector<FreeDecay>>& later,
+                   const std::vector<int>& impacts, const Band& band, const ModesOfTaps& found) {
+  const double decay_per_s = 2.0 * std::numbers::pi * centre_of(mode) * mode.damping_ratio.value;
+  // A term that dies away sooner than a blow lasts would take its reflections for the mode.
+  const int most_terms = std::max(1, static_cast<int>(1.0 / (blow_s * decay_per_s)));
+  std::vector<double> noise;
+  for (std::size_t i = 0; i < delays_s.size(); ++i) {
+    if (delays_s.at(i) * decay_per_s > 2.0) {
+      break;  // too little of the mode would be left
+    }
+    try {
+      const auto fit = Neighbourhood{mode, later[i], impacts, band, found}.single(most_terms);
+      if (!fit) {
+        break;
+      }
+      noise.push_back(fit->noise);
+    } catch (const core::InvalidInput&) {
+      break;
+    }
+  }
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    if (noise[i] <= as_well * *std::ranges::min_element(noise)) {
+      return delays_s.at(i);
+    }
+  }
+  return 0.0;
+}
+}  // namespace
+
+double settled_after_s(const std::vector<FreeDecay>& decays, const std::vector<int>& impacts,
+                       const Band& band, const ModesOfTaps& found) {
+  constexpr std::size_t most_modes = 6;
+  std::vector<RepeatedMode> strongest = by_strength(found.modes);
+  std::erase_if(strongest,
+                [](const RepeatedMode& mode) { return mode.standing != Standing::agreed; });
+  strongest.resize(std::min(strongest.size(), most_modes));
+  std::vector<std::vector<FreeDecay>> later;
+  for (const double delay_s : delays_s) {
+    std::vector<FreeDecay>& some = later.emplace_back();
+    for (const FreeDecay& decay : decays) {
+      some.push_back(begun_later(decay, delay_s));
+    }
+  }
+  double settled_s = 0.0;
+  for (const RepeatedMode& mode : strongest) {
+    settled_s = std::max(settled_s, settled_for(mode, later, impacts, band, found));
+  }
+  return settled_s;
+}
+
+std::vector<RepeatedMode> distinct_modes(const std::vector<FreeDecay>& decays,
+                                         const std::vector<int>& impacts, const Band& band,
+                                         const ModesOfTaps& found) {
+  ModesOfTaps left = found;
+  std::set<double> taken_hz;
+  for (const RepeatedMode& strongest : by_strength(found.modes)) {
+    if (taken_hz.contains(centre_of(strongest))) {
+      continue;
+    }
+    try {
+      const Neighbourhood near{strongest, decays, impacts, band, left};
+      if (const std::optional<RepeatedMode> one = near.one_mode()) {
+        std::erase_if(left.modes, [&](const RepeatedMode& mode) {
+          const bool is_part = near.holds(mode);
+          if (is_part) {
+            taken_hz.insert(centre_of(mode));
+          }
+          return is_part;
+        });
+        left.modes.push_back(*one);
+        taken_hz.insert(centre_of(*one));
+      }
+    } catch (const core::InvalidInput&) {
+      continue;  // a decay too short for so narrow a band: it stays as it is
+    }
+  }
+  std::ranges::sort(left.modes, {}, [](const RepeatedMode& mode) { return centre_of(mode); });
+  return left.modes;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,22 @@
+#pragma once
+#include <vector>
+
+#include "analysis/modal/modes/close_modes.hpp"
+namespace tapstudy::analysis {
+// Neighbours that are one mode become one. From the strongest on, all that the taps show within
+// reach of a mode is compared with a single mode whose frequency and damping follow its amplitude
+// (resting_pole_fit.hpp), over all taps at once, by Schwarz's criterion: if that is no worse, they
+// are one mode, whose estimates are those at rest, with jackknife intervals over impacts.
+// Neighbours stay as they are if all taps together told them apart and the single mode fits worse.
+std::vector<RepeatedMode> distinct_modes(const std::vector<FreeDecay>& decays,
+                                         const std::vector<int>& impacts, const Band& band,
+                                         const ModesOfTaps& found);
+
+// How long after these decays begin they are free: 0, or up to 12 ms later, while reflections of
+// the blow arrive or the striker still touches. Each of the six strongest modes, which may follow
+// its amplitude, then explains its neighbourhood as well as later on (standard deviations within 15
+// %).
+double settled_after_s(const std::vector<FreeDecay>& decays, const std::vector<int>& impacts,
+                       const Band& band, const ModesOfTaps& found);
+FreeDecay begun_later(const FreeDecay& decay, double after_s);
+}  // namespace tapstudy::analysis

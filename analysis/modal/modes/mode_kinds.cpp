@@ -1,0 +1,231 @@
+#include "analysis/modal/modes/mode_kinds.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "analysis/statistics/quantiles.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+double hz(const RepeatedMode& mode) {
+  return mode.frequency_hz.value;
+}
+
+bool is_listed(const RepeatedMode& mode) {
+  return mode.standing == Standing::agreed;
+}
+
+double width(const Interval& interval) {
+  return interval.high - interval.low;
+}
+
+// Why a mode is not certain, or empty.
+std::string uncertainty_of(const RepeatedMode& mode) {
+  const Interval& ratio = mode.damping_ratio.interval;
+  if (!(ratio.low > 0.0)) {
+    return fmt::format("its damping ratio is anything from {:.2g} to {:.2g}", ratio.low,
+                       ratio.high);
+  }
+  if (!(width(mode.frequency_hz.interval) <= widest_frequency * hz(mode))) {
+    return fmt::format("its frequency is anything from {:.4g} to {:.4g} Hz",
+                       mode.frequency_hz.interval.low, mode.frequency_hz.interval.high);
+  }
+  return {};
+}
+}  // namespace
+
+void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes) {
+  for (RepeatedMode& mode : modes) {
+    if (mode.standing == Standing::line) {
+      continue;
+    }
+    if (hz(mode) * decay_s < min_periods) {
+      mode.standing = Standing::background;
+      mode.why = fmt::format("fewer than {:g} periods in a decay", min_periods);
+      continue;
+    }
+    const std::string uncertain = uncertainty_of(mode);
+    if (is_listed(mode) && !uncertain.empty()) {
+      mode.standing = Standing::doubtful;
+      mode.why = uncertain;
+    }
+  }
+  const auto lowest = std::ranges::find_if(modes, is_listed);
+  for (auto mode = modes.begin(); mode != lowest; ++mode) {
+    if (mode->standing == Standing::doubtful && mode->damping_ratio.value <= 0.0) {
+      mode->standing = Standing::background;
+    }
+  }
+}
+
+namespace {
+constexpr double around = 1.5;
+constexpr double as_strong = 0.5;
+constexpr double highest_hum_hz = 200.0;
+
+double amplitude_in(const Band& band, const FreeDecay& rest) {
+  const Eigen::VectorXd about_mean = (rest.samples.array() - rest.samples.mean()).matrix();
+  try {
+    const BandSpectrum spectrum = band_spectrum({rest.rate_hz, about_mean}, band);
+    return 2.0 * spectrum.values.norm() / static_cast<double>(spectrum.length);
+  } catch (const core::InvalidInput&) {
+    return 0.0;  // too short to tell
+  }
+}
+}  // namespace
+
+double amplitude_at(double frequency_hz, const FreeDecay& rest) {
+  return frequency_hz * rest.duration_s() < min_periods
+             ? 0.0
+             : amplitude_in({frequency_hz / around, around * frequency_hz}, rest);
+}
+
+void mark_background(const std::vector<FreeDecay>& rests, std::vector<RepeatedMode>& modes) {
+  for (RepeatedMode& mode : modes) {
+    // Within so few periods a slow movement looks like it, of any lower frequency.
+    const bool is_short = 2.0 * std::numbers::pi * mode.damping_ratio.value * min_periods > 1.0;
+    std::vector<double> amplitudes;
+    for (const FreeDecay& rest : rests) {
+      amplitudes.push_back(is_short && rest.samples.size() > 0
+                               ? amplitude_in({1.0 / rest.duration_s(), around * hz(mode)}, rest)
+                               : amplitude_at(hz(mode), rest));
+    }
+    if (mode.standing != Standing::line && hz(mode) < highest_hum_hz && !amplitudes.empty() &&
+        quantile(amplitudes, 0.5) >= as_strong * mode.amplitude) {
+      mode.standing = Standing::background;
+      mode.why = "as strong at rest as in the taps";
+    }
+  }
+}
+
+namespace {
+constexpr double combination_tolerance = 0.002;  // of the frequency: a converter's and a fit's
+constexpr double rate_tolerance = 0.3;           // of the decay
+constexpr double combination_weakness = 0.3;     // about 10 dB
+constexpr int highest_multiple = 3;
+
+struct Line {
+  double frequency_hz{};
+  double decay_per_s{};
+};
+
+Line line_of(const RepeatedMode& mode) {
+  return {hz(mode), 2.0 * std::numbers::pi * hz(mode) * mode.damping_ratio.value};
+}
+
+bool is_made_as(const Line& made, const RepeatedMode& mode) {
+  const double apart_hz = std::abs(made.frequency_hz - hz(mode));
+  const double decay_per_s = line_of(mode).decay_per_s;
+  return apart_hz <=
+             std::max(combination_tolerance * hz(mode), width(mode.frequency_hz.interval) / 2.0) &&
+         std::abs(decay_per_s - made.decay_per_s) <= rate_tolerance * made.decay_per_s;
+}
+
+// "2 x 45.9 Hz", "45.9 - 6.9 Hz", or empty.
+std::string made_of(const RepeatedMode& mode, const RepeatedMode& one, const RepeatedMode& other) {
+  const Line a = line_of(one);
+  const Line b = line_of(other);
+  for (int n = 1; n <= highest_multiple; ++n) {
+    if (&one == &other) {
+      if (n > 1 && is_made_as({n * a.frequency_hz, n * a.decay_per_s}, mode)) {
+        return fmt::format("{} times {:.5g} Hz", n, a.frequency_hz);
+      }
+      continue;
+    }
+    for (const double sign : {-1.0, 1.0}) {
+      const Line made{a.frequency_hz + sign * n * b.frequency_hz,
+                      a.decay_per_s + n * b.decay_per_s};
+      if (made.frequency_hz > 0.0 && is_made_as(made, mode)) {
+        return fmt::format("{:.5g} Hz {} {}{:.5g} Hz", a.frequency_hz, sign < 0.0 ? "-" : "+",
+                           n > 1 ? fmt::format("{} times ", n) : "", b.frequency_hz);
+      }
+    }
+  }
+  return {};
+}
+
+std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedMode>& modes) {
+  const auto is_stronger = [&](const RepeatedMode& other) {
+    return is_listed(other) && mode.amplitude < combination_weakness * other.amplitude;
+  };
+  for (const RepeatedMode& one : modes) {
+    for (const RepeatedMode& other : modes) {
+      if (is_stronger(one) && is_stronger(other)) {
+        if (std::string made = made_of(mode, one, other); !made.empty()) {
+          return made;
+        }
+      }
+    }
+  }
+  return {};
+}
+}  // namespace
+
+void mark_combinations(std::vector<RepeatedMode>& modes) {
+  const std::vector<RepeatedMode> before = modes;
+  for (RepeatedMode& mode : modes) {
+    const std::string made = is_listed(mode) ? combination_of(mode, before) : std::string{};
+    if (!made.empty()) {
+      mode.standing = Standing::combination;
+      mode.why = made;
+    }
+  }
+}
+
+namespace {
+struct Others {
+  int count{};
+  double low_hz{};
+  double high_hz{};
+  std::string first_why;
+};
+
+std::string places(const Others& others) {
+  if (others.count == 1) {
+    return fmt::format("1 component at {:.4g} Hz", others.high_hz);
+  }
+  return fmt::format("{} components from {:.3g} to {:.4g} Hz", others.count, others.low_hz,
+                     others.high_hz);
+}
+
+std::string sentence(Standing kind, const Others& others) {
+  switch (kind) {
+    case Standing::background:
+      return fmt::format("{} component{} below {:.3g} Hz: hum or handling", others.count,
+                         others.count == 1 ? "" : "s", std::ceil(others.high_hz));
+    case Standing::line:
+      return places(others) + ": steady tones, hum of the mains among them";
+    case Standing::combination:
+      return places(others) + ": multiples, sums and differences of stronger modes";
+    case Standing::doubtful:
+      return places(others) + ": doubtful";
+    case Standing::agreed:
+      break;
+  }
+  return {};
+}
+}  // namespace
+
+std::vector<std::string> summaries_of_others(const std::vector<RepeatedMode>& modes) {
+  std::map<Standing, Others> kinds;
+  for (const RepeatedMode& mode : modes) {
+    if (!is_listed(mode)) {
+      Others& others = kinds[mode.standing];
+      others.low_hz = others.count == 0 ? hz(mode) : std::min(others.low_hz, hz(mode));
+      others.high_hz = std::max(others.high_hz, hz(mode));
+      ++others.count;
+    }
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [kind, others] : kinds) {
+    sentences.push_back(sentence(kind, others));
+  }
+  return sentences;
+}
+}  // namespace tapstudy::analysis

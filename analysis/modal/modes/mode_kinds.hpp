@@ -1,0 +1,35 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "analysis/modal/modes/repeated_modes.hpp"
+namespace tapstudy::analysis {
+// Below so many periods in a decay's length frequency and damping cannot be told from a drift.
+inline constexpr double min_periods = 3.0;
+// The widest interval of a mode's frequency, of the frequency.
+inline constexpr double widest_frequency = 0.1;
+
+// What is listed as a mode is certain to be one: agreed ones become doubtful whose damping interval
+// holds 0 or whose frequency interval is wider than widest_frequency, with a reason. What makes
+// fewer than min_periods in a decay of this length becomes background (unless it is a line), and
+// so does what grows below the weakest mode's frequency.
+void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes);
+
+// The amplitude of one tone with the power that a sensor shows at rest around a frequency (from two
+// thirds to one and a half of it); 0 where too short to tell.
+double amplitude_at(double frequency_hz, const FreeDecay& rest);
+// What is below 200 Hz and at least half as strong at rest, before the taps, is no answer to them
+// but background.
+void mark_background(const std::vector<FreeDecay>& rests, std::vector<RepeatedMode>& modes);
+
+// Modes that are made by stronger ones: where the motion's products reach the sensor (a joint, a
+// contact, an overdriven amplifier), the products of two decaying motions decay by the sum of their
+// rates. What lies at a multiple n f of one stronger mode, or at f ± n g of two, decays at that
+// rate, both within the intervals or combination_tolerance, and is weaker by
+// combination_weakness, is a combination. Modes in ascending frequency.
+void mark_combinations(std::vector<RepeatedMode>& modes);
+
+// What is not listed among the modes, one sentence a kind: "11 components below 40 Hz: hum or
+// handling".
+std::vector<std::string> summaries_of_others(const std::vector<RepeatedMode>& modes);
+}  // namespace tapstudy::analysis

@@ -1,0 +1,213 @@
+#include "runner/laboratory/identify/modes_of_taps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "analysis/modal/decay/decay_band.hpp"
+#include "analysis/modal/modes/close_modes.hpp"
+#include "analysis/modal/modes/distinct_modes.hpp"
+#include "analysis/modal/modes/mode_kinds.hpp"
+#include "analysis/statistics/quantiles.hpp"
+#include "core/error.hpp"
+namespace tapstudy::runner {
+namespace {
+constexpr double default_low_hz = 10.0;
+constexpr double sinusoid_high_hz = 1000.0;
+constexpr double least_high_hz = 100.0;
+constexpr double above_highest_peak = 1.25;
+constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
+constexpr double max_rate_share = 0.47;
+constexpr double told_energy_outside = 0.01;
+
+std::vector<analysis::FreeDecay> decays_of(const std::vector<IdentifiedTap>& taps) {
+  std::vector<analysis::FreeDecay> decays;
+  for (const IdentifiedTap& tap : taps) {
+    decays.push_back(tap.decay);
+  }
+  return decays;
+}
+
+analysis::Band band_sought(const TapQuestion& question,
+                           const std::vector<analysis::FreeDecay>& decays,
+                           std::optional<double> band_limit_hz) {
+  const double rate_hz =
+      std::ranges::min_element(decays, {}, &analysis::FreeDecay::rate_hz)->rate_hz;
+  if (question.band) {
+    return *question.band;
+  }
+  const double follows_hz = std::max(
+      least_high_hz, above_highest_peak * analysis::highest_peak_hz(decays, default_low_hz));
+  return {default_low_hz,
+          std::min({usable_rate_share * rate_hz, follows_hz, band_limit_hz.value_or(follows_hz)})};
+}
+}  // namespace
+
+void check_band(const TapQuestion& question, double rate_hz) {
+  if (question.band && question.band->high_hz > max_rate_share * rate_hz) {
+    throw core::InvalidInput{fmt::format("--band: ends at {:g} Hz, above {} of the rate of {:g} Hz",
+                                         question.band->high_hz, max_rate_share, rate_hz)};
+  }
+}
+
+analysis::Band modal_band(const TapQuestion& question, const std::vector<IdentifiedTap>& taps,
+                          std::optional<double> band_limit_hz, std::vector<std::string>& remarks) {
+  const std::vector<analysis::FreeDecay> decays = decays_of(taps);
+  const analysis::Band band = band_sought(question, decays, band_limit_hz);
+  const analysis::EnergyOutside outside =
+      analysis::energy_outside(decays, band, std::min(default_low_hz, band.low_hz));
+  if (outside.share > told_energy_outside) {
+    remarks.push_back(fmt::format(
+        "{:.0f} % of the taps' energy lies outside the band of {:g} to {:g} Hz, most of it near "
+        "{:.4g} Hz (--band)",
+        100.0 * outside.share, band.low_hz, band.high_hz, outside.peak_hz));
+  }
+  return band;
+}
+
+analysis::Band band_of_sinusoid(const analysis::Band& sought, double rate_hz) {
+  return {sought.low_hz,
+          std::max(sought.high_hz, std::min(sinusoid_high_hz, usable_rate_share * rate_hz))};
+}
+
+namespace {
+// All taps in one part of the band.
+struct PartOfBand {
+  analysis::Band band;
+  std::vector<std::size_t> taps;  // that are long enough: indices
+  std::vector<analysis::FreeDecay> decays;
+  std::vector<int> impacts;
+  std::vector<analysis::TapModes> modes;
+};
+
+PartOfBand identified_in(const analysis::Band& band, const std::vector<IdentifiedTap>& taps,
+                         TapRemarks& remarks) {
+  PartOfBand part{band, {}, {}, {}, {}};
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    analysis::FreeDecay decay = analysis::shortened_for(band, taps[i].decay);
+    try {
+      part.modes.push_back(analysis::identify_modes(decay, {band}));
+    } catch (const core::InvalidInput& error) {
+      remarks.add(taps[i].file,
+                  {taps[i].time_s, fmt::format("left out, {}", error.what()), std::string{}});
+      continue;
+    }
+    part.taps.push_back(i);
+    part.decays.push_back(std::move(decay));
+    part.impacts.push_back(taps[i].impact);
+  }
+  return part;
+}
+
+void share_lines(const std::vector<IdentifiedTap>& taps, PartOfBand& part, TapRemarks& remarks) {
+  const std::vector<analysis::TapModes> alone = part.modes;
+  for (std::size_t k = 0; k < part.taps.size(); ++k) {
+    analysis::ModeFinding finding{part.band};
+    finding.lines_hz = analysis::missed_lines(part.modes[k], alone);
+    if (finding.lines_hz.empty()) {
+      continue;
+    }
+    try {
+      part.modes[k] = analysis::identify_modes(part.decays[k], finding);
+    } catch (const core::InvalidInput& error) {
+      const IdentifiedTap& tap = taps[part.taps[k]];
+      remarks.add(tap.file, {tap.time_s,
+                             "too short for the steady tones that other taps show: they may "
+                             "falsify its damping",
+                             error.what()});
+    }
+  }
+}
+
+double median_duration_s(const std::vector<IdentifiedTap>& taps) {
+  std::vector<double> durations_s;
+  for (const IdentifiedTap& tap : taps) {
+    durations_s.push_back(tap.decay.duration_s());
+  }
+  return analysis::quantile(durations_s, 0.5);
+}
+}  // namespace
+
+namespace {
+// Part by part of the band; taps that are too short for all of them are left out.
+analysis::ModesOfTaps found_in_parts(const analysis::Band& band, std::vector<IdentifiedTap>& taps,
+                                     TapRemarks& remarks) {
+  std::vector<std::vector<analysis::TapModes>> pieces(taps.size());
+  analysis::ModesOfTaps found;
+  for (const analysis::Band& of_part : analysis::parts_of(band)) {
+    PartOfBand part = identified_in(of_part, taps, remarks);
+    if (part.taps.empty()) {
+      continue;
+    }
+    share_lines(taps, part, remarks);
+    analysis::ModesOfTaps in_part = analysis::resolve_close_modes(
+        part.decays, part.impacts, of_part,
+        {part.modes, analysis::modes_over_taps(part.modes, part.impacts)});
+    found.modes.insert(found.modes.end(), in_part.modes.begin(), in_part.modes.end());
+    for (std::size_t k = 0; k < part.taps.size(); ++k) {
+      pieces[part.taps[k]].push_back(std::move(in_part.taps[k]));
+    }
+  }
+  std::vector<IdentifiedTap> left;
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    if (!pieces[i].empty()) {
+      left.push_back(std::move(taps[i]));
+      left.back().modes = analysis::joined(left.back().decay, band, pieces[i]);
+      found.taps.push_back(left.back().modes);
+    }
+  }
+  taps = std::move(left);
+  return found;
+}
+
+std::vector<int> impacts_of(const std::vector<IdentifiedTap>& taps) {
+  std::vector<int> impacts;
+  std::ranges::transform(taps, std::back_inserter(impacts), &IdentifiedTap::impact);
+  return impacts;
+}
+
+void begin_later(double after_s, std::vector<IdentifiedTap>& taps, TapRemarks& remarks) {
+  for (IdentifiedTap& tap : taps) {
+    const Eigen::Index before = tap.decay.samples.size();
+    tap.decay = analysis::begun_later(tap.decay, after_s);
+    tap.tap.begin += static_cast<std::size_t>(before - tap.decay.samples.size());
+    remarks.add(
+        tap.file,
+        {tap.time_s,
+         fmt::format("free only {:g} ms later than it seems (reflections of the blow?), the "
+                     "decay is taken from there on",
+                     1e3 * after_s),
+         {}});
+  }
+}
+}  // namespace
+
+std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
+                                                   std::vector<IdentifiedTap>& taps,
+                                                   TapRemarks& remarks) {
+  analysis::ModesOfTaps found = found_in_parts(band, taps, remarks);
+  if (taps.empty()) {
+    return {};
+  }
+  const double settled_s =
+      analysis::settled_after_s(decays_of(taps), impacts_of(taps), band, found);
+  if (settled_s > 0.0) {
+    begin_later(settled_s, taps, remarks);
+    found = found_in_parts(band, taps, remarks);
+    if (taps.empty()) {
+      return {};
+    }
+  }
+  std::vector<analysis::RepeatedMode> modes =
+      analysis::distinct_modes(decays_of(taps), impacts_of(taps), band, found);
+  std::vector<analysis::FreeDecay> rests;
+  std::ranges::transform(taps, std::back_inserter(rests), &IdentifiedTap::rest);
+  analysis::mark_background(rests, modes);
+  analysis::judge_certainty(median_duration_s(taps), modes);
+  analysis::mark_combinations(modes);
+  return modes;
+}
+}  // namespace tapstudy::runner

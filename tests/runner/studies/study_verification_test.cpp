@@ -377,9 +377,8 @@ TEST_CASE("a trial of a block that the protocol lacks is named by whoever reads 
         CHECK_THROWS_WITH(
             runner::summary_of_study({{study.path(), &study.store()}}, results::Mode::simulated),
             Contains("trial 2 is of block 'nowhere', which the protocol lacks"));
-        CHECK_THROWS_AS(
-            runner::check_names(study.store(), runner::stored_protocol(study.store())),
-            results::StoreError);
+        CHECK_THROWS_AS(runner::check_names(study.store(), runner::stored_protocol(study.store())),
+                        results::StoreError);
       });
 }
 

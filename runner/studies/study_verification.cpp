@@ -64,6 +64,18 @@ void check_by_protocol(results::Store& store, const protocols::Protocol& protoco
   }
 }
 
+// Before 0.3 a session came into the journal with its first answer, if it had one.
+std::vector<results::SessionRow> comparable_sessions(results::Store& store,
+                                                     const results::JournalContent& journal) {
+  std::vector<results::SessionRow> sessions = store.sessions();
+  std::erase_if(sessions, [&](const results::SessionRow& session) {
+    return is_before(session.program_version, 0, 3) &&
+           std::ranges::find(journal.sessions, session.id, &results::SessionRow::id) ==
+               journal.sessions.end();
+  });
+  return sessions;
+}
+
 // As multisets: a line that stands twice is missing once where it stands once.
 void compare(Lines stored, Lines journalled, Verification& found) {
   std::ranges::sort(stored);
@@ -94,7 +106,7 @@ Verification verification_of(results::Store& store, const std::string& directory
     const results::JournalContent journal = results::read_journal(directory);
     found.journalled_answers = std::ssize(journal.entries.answers);
     found.study_and_sessions =
-        results::differing_study_and_sessions(study, store.sessions(), journal);
+        results::differing_study_and_sessions(study, comparable_sessions(store, journal), journal);
     compare(results::to_lines(in_store), results::to_lines(journal.entries), found);
   } catch (const results::StoreError& error) {
     found.journal_fault = store.sessions().empty() ? unfinished_beginning : error.what();

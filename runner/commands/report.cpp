@@ -204,7 +204,7 @@ void run_report(ReportOptions options) {
   }
   check_output_is_new(options);
   const Summary summary = summary_of(options);
-  constexpr std::size_t most_lines = 15;  // of a table
+  constexpr std::size_t most_lines = 15;  // of a table of participants
   analysis::write_text(std::cout, summary, options.shows_all ? analysis::all_lines : most_lines);
   std::cout << std::endl;
   if (!options.out.empty()) {
@@ -261,7 +261,7 @@ void add_report(CommandParser& line) {
   command.option("--only", options->only,
                  "Only these parts, comma-separated: names of blocks, contrasts, confidence, "
                  "sessions, procedures, questionnaires, rendered");
-  command.flag("--all", options->shows_all, "Print tables whole, however many rows they have");
+  command.flag("--all", options->shows_all, "Print the rows of all participants, however many");
   command.flag("--replace", options->replace, "Replace an earlier report");
   command.on_run([options] { run_report(*options); });
 }

@@ -48,13 +48,22 @@ bool are_equal(const protocols::AxisValues& planned, const results::AxisValues& 
   });
 }
 
-// What a procedure chooses is not planned.
+// What a procedure chooses is not planned: the comparison's values, and those of all alternatives
+// on further axes.
 bool are_equal(const std::vector<results::AlternativeRow>& planned,
-               const std::vector<results::AlternativeRow>& stored) {
-  return std::ranges::equal(planned, stored, [](const auto& one, const auto& other) {
+               const std::vector<results::AlternativeRow>& stored, const protocols::Block& block) {
+  const auto without_chosen = [&](results::AxisValues values) {
+    std::erase_if(values, [&](const auto& value) {
+      return block.comparison && std::ranges::find(block.comparison->further_axes, value.first) !=
+                                     block.comparison->further_axes.end();
+    });
+    return values;
+  };
+  return std::ranges::equal(planned, stored, [&](const auto& one, const auto& other) {
     return one.label == other.label && one.stimulus == other.stimulus &&
            one.is_comparison == other.is_comparison &&
-           (one.axis_values.empty() || are_equal(one.axis_values, other.axis_values));
+           (one.axis_values.empty() ||
+            are_equal(one.axis_values, without_chosen(other.axis_values)));
   });
 }
 
@@ -72,7 +81,7 @@ std::string differing(const PlannedTrial& planned, Statement& row,
   note("is_practice", row.flag(5) == planned.is_practice);
   note("is_catch", row.flag(6) == planned.is_catch);
   note("presented", row.flag(7) == (block.presented == protocols::Presented::real_plates));
-  note("alternative", are_equal(alternative_rows(planned, block), alternatives));
+  note("alternative", are_equal(alternative_rows(planned, block), alternatives, block));
   return names;
 }
 

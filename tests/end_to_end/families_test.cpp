@@ -261,7 +261,9 @@ TEST_CASE("alternatives of a trial share their value on a further axis, also in 
                       "SELECT count(DISTINCT value) FROM axis_value WHERE axis = "
                       "'sinusoid_frequency_hz'")) > 1);
   CHECK(presented(parts) == presented(whole));
-  CHECK(testing::tapstudy({"verify", whole / "study"}).exit_code == 0);
+  const auto verified = testing::tapstudy({"verify", whole / "study"});
+  INFO(verified.standard_output << verified.standard_error);
+  CHECK(verified.exit_code == 0);
 }
 
 TEST_CASE("what a report says that a procedure estimated is Bayes' rule of the stored answers",

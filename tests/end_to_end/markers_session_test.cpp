@@ -279,8 +279,11 @@ assert len(markers) > 30 and [text for _, text in markers] == [text for _, text 
 for (here, text), (there, _) in zip(markers, sent[-len(markers):]):
     assert abs(here - there) < 1e-3, (here, there, text)
 forces = [(float(at_s), *map(float, force)) for kind, at_s, *force in received if kind == "force"]
-ticks = sum(ticks for ticks, in sqlite3.connect(sys.argv[3]).execute("SELECT ticks FROM trial"))
-assert len(forces) == ticks > 1000, (len(forces), ticks)
+ticks, = sqlite3.connect(sys.argv[3]).execute(
+    "SELECT sum(ticks) FROM tick_statistics JOIN trial USING (trial_id) WHERE number > 1").fetchone()
+begin_s = next(at_s for at_s, text in sent if text.startswith("ready 2"))
+later = [force for force in forces if force[0] > begin_s]
+assert len(later) == ticks > 1000, (len(later), ticks)
 assert all(a[0] < b[0] for a, b in zip(forces, forces[1:]))
 assert max(y for _, _, y, _ in forces) > 0.5
 )py";

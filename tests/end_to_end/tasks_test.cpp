@@ -607,7 +607,7 @@ TEST_CASE("a session that is resumed in an adaptive track goes on with the same 
   CHECK(levels(parts) == uninterrupted);
 }
 
-TEST_CASE("every shipped study is simulated and reported", "[end_to_end][slow]") {
+TEST_CASE("every shipped study is simulated, verified and reported", "[end_to_end][slow]") {
   const std::string folder = GENERATE("recommended", "examples");
   int studies = 0;
   for (const auto& entry : std::filesystem::directory_iterator{testing::shipped(folder)}) {
@@ -618,10 +618,13 @@ TEST_CASE("every shipped study is simulated and reported", "[end_to_end][slow]")
     const TempDirectory directory;
     ++studies;
     const auto simulated = testing::tapstudy({"simulate", entry.path().string(), "--participants",
-                                              "3", "--seed", "2", "--out", directory / "study"});
+                                              "2", "--seed", "2", "--out", directory / "study"});
     INFO(simulated.standard_error);
     REQUIRE(simulated.exit_code == 0);
     CHECK(sql(directory, "PRAGMA foreign_key_check") == "");
+    const auto verified = testing::tapstudy({"verify", directory / "study"});
+    INFO(verified.standard_output << verified.standard_error);
+    CHECK(verified.exit_code == 0);
     const auto report = testing::tapstudy({"report", directory / "study"});
     INFO(report.standard_error);
     CHECK(report.exit_code == 0);

@@ -324,7 +324,7 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
   testing::write(directory / "spidar_calibration.yaml", calibration());
   std::set<std::string> asked;
   for (const std::string& rig :
-       {shipped_rig("spidar_g6") + "audio: {}\nmarkers: {osc: {port: 9000}, lines: x}\n"
+       {shipped_rig("spidar_g6") + "audio: {}\nmarkers: {osc: {port: 9000}, lsl: {}, lines: x}\n"
                                    "vibration_response: {points: [{frequency_hz: 9, gain: 1}]}\n",
         shipped_rig("remote"), replay_rig}) {
     asked.merge(runner::rig_keys_asked_for(rig, directory / "rig.yaml"));

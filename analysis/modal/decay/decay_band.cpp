@@ -120,20 +120,26 @@ Eigen::ArrayXd power_of(const FreeDecay& decay, const Band& band, Eigen::Index f
       .array();
 }
 
-// Where the part's last mode has died away in what is left at the decay's end.
+// Where the part's last mode has died away in what is left at the decay's end. A narrow part is
+// looked at with its surroundings, in chunks that are long enough to hold bins of them.
 Eigen::Index rung_until(const Band& part, const FreeDecay& decay) {
-  const auto count = static_cast<Eigen::Index>(std::lround(chunk_s * decay.rate_hz));
+  constexpr double surroundings = 1.25;
+  constexpr double bins = 12.0;
+  const Band seen{part.low_hz / surroundings,
+                  std::min(usable_share * decay.rate_hz, surroundings * part.high_hz)};
+  const double longest_s = std::max(chunk_s, bins / (seen.high_hz - seen.low_hz));
+  const auto count = static_cast<Eigen::Index>(std::lround(longest_s * decay.rate_hz));
   const Eigen::Index chunks = decay.samples.size() / std::max<Eigen::Index>(count, 1);
   if (chunks < 2 * chunks_at_rest) {
     return decay.samples.size();
   }
-  Eigen::ArrayXd rest = power_of(decay, part, (chunks - 1) * count, count);
+  Eigen::ArrayXd rest = power_of(decay, seen, (chunks - 1) * count, count);
   for (Eigen::Index i = 2; i <= chunks_at_rest; ++i) {
-    rest += power_of(decay, part, (chunks - i) * count, count);
+    rest += power_of(decay, seen, (chunks - i) * count, count);
   }
   rest = (rest / static_cast<double>(chunks_at_rest)).max(1e-290);
   Eigen::Index last = chunks - chunks_at_rest;
-  while (last > 1 && (power_of(decay, part, (last - 1) * count, count) / rest).maxCoeff() <
+  while (last > 1 && (power_of(decay, seen, (last - 1) * count, count) / rest).maxCoeff() <
                          over_chunks_at_rest) {
     --last;
   }

@@ -23,8 +23,9 @@ EnergyOutside energy_outside(const std::vector<FreeDecay>& decays, const Band& b
 // Parts of a wide band in which modes are sought one after another: up to 1000 Hz, then octaves. A
 // fit's cost grows with the cube of what is in it.
 std::vector<Band> parts_of(const Band& band);
-// A decay until what it has in a part of the band has died away (no bin of 50 ms has thirty times
-// the power of the last 150 ms), and above 1000 Hz no longer than 1000 periods: what follows is
-// noise, which costs time and hides nothing.
+// A decay until what it has in a part of the band has died away (no bin of 50 ms, or of longer
+// where the part is low or narrow, has thirty times the power of the last three of these), and
+// above 1000 Hz no longer than 1000 periods: what follows is noise, which costs time and hides
+// nothing.
 FreeDecay shortened_for(const Band& part, const FreeDecay& decay);
 }  // namespace tapstudy::analysis

@@ -39,8 +39,8 @@ nlohmann::ordered_json as_json(const Proportion& proportion);
 nlohmann::ordered_json as_json(const std::vector<HypothesisResult>& hypotheses);
 
 // One table in each format.
-// In 100 columns. Rows that would take it beyond so many lines are left out and counted, those of a
-// matrix aside.
+// In 100 columns. Rows of participants that would take it beyond so many lines are left out and
+// counted.
 void write_table_text(std::ostream& out, const ReportTable& table,
                       std::size_t most_lines = all_lines);
 // A wide table scrolls within its own frame, which the keyboard reaches.

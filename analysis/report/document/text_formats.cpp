@@ -133,6 +133,10 @@ void write_line(std::ostream& out, const std::vector<std::string>& cells,
   core::print(out, "{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
 }
 
+bool has_rows_of_participants(const ReportTable& table) {
+  return !table.columns.empty() && table.columns.front().heading.words == "participant";
+}
+
 // A table that is too wide: one entry below another.
 void write_entry(std::ostream& out, const std::vector<std::string>& headings,
                  const std::vector<std::string>& row) {
@@ -152,7 +156,9 @@ void write_table_text(std::ostream& out, const ReportTable& table, std::size_t m
   out << wrapped(table.title, 2);
   const bool is_wide = total > terminal_columns && !table.is_matrix;
   const std::size_t lines_of_row = is_wide ? std::max<std::size_t>(1, widths.size()) : 1;
-  const std::size_t most_rows = table.is_matrix ? all_lines : most_lines / lines_of_row;
+  const std::size_t most_rows = has_rows_of_participants(table)
+                                    ? std::max<std::size_t>(1, most_lines / lines_of_row)
+                                    : all_lines;
   if (!is_wide) {
     write_line(out, grid.headings, widths);
   }

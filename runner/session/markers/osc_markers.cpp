@@ -52,7 +52,8 @@ class OscMarkers final : public MarkerOutput {
     lo_message_add_double(message, change.t_s);
     lo_message_add_int32(message, change.number.value_or(-1));
     lo_message_add_string(message, change.detail.c_str());
-    lo_message_add_double(message, 1e-9 * static_cast<double>(marker.monotonic_ns));
+    constexpr double ns_per_s = 1e9;
+    lo_message_add_double(message, static_cast<double>(marker.monotonic_ns) / ns_per_s);
     lo_message_add_timetag(message, timetag_of(marker.utc_ns));
     const int sent =
         lo_send_message(address_.get(), ("/tapstudy/" + change.state).c_str(), message);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "analysis/modal/decay/decay_band.hpp"
 #include "analysis/modal/modes/assignment.hpp"
@@ -546,4 +547,29 @@ TEST_CASE("springs of which the modes do not tell are not stated", "[analysis][i
   auto two = measured(1.0, 1.0, 0.0, rng);
   two.resize(2);
   CHECK_FALSE(analysis::update_springs(two, frequencies_hz, modulus_pa));
+}
+
+TEST_CASE("a decay is kept for as long as it rings, for a part of the band of any width",
+          "[analysis][modal]") {
+  constexpr double rate_hz = 4000.0;
+  constexpr double decay_per_s = 8.0;
+  constexpr double noise = 1e-4;
+  for (const double frequency_hz : {20.0, 45.9, 300.0, 900.0}) {
+    core::Rng rng{7};
+    analysis::FreeDecay decay{rate_hz, Eigen::VectorXd{12'000}};
+    for (Eigen::Index i = 0; i < decay.samples.size(); ++i) {
+      const double t_s = static_cast<double>(i) / rate_hz;
+      decay.samples[i] =
+          std::exp(-decay_per_s * t_s) * std::sin(2.0 * std::numbers::pi * frequency_hz * t_s) +
+          noise * rng.normal();
+    }
+    for (const double share : {0.0, 0.05, 0.5}) {
+      INFO(frequency_hz << " Hz, " << share);
+      const double kept_s = analysis::shortened_for(
+                                {(1.0 - share) * frequency_hz, (1.0 + share) * frequency_hz}, decay)
+                                .duration_s();
+      CHECK(std::exp(-decay_per_s * kept_s) < 10.0 * noise);
+      CHECK(kept_s <= 3.0);
+    }
+  }
 }

@@ -79,9 +79,9 @@ std::vector<ReportSection> sections() {
 }
 }  // namespace
 
-TEST_CASE("a table on the terminal shows so many rows and counts the others, and whole all of them",
+TEST_CASE("a table of participants shows so many rows on the terminal and counts the others",
           "[analysis][course]") {
-  ReportTable table{"people", "People", {{"person", {"person"}}, {"number", {"number"}}}};
+  ReportTable table{"people", "People", {{"participant", {"participant"}}, {"number", {"number"}}}};
   for (int i = 0; i < 40; ++i) {
     table.rows.push_back({word(fmt::format("P{:02}", i)), count(i)});
   }
@@ -97,6 +97,10 @@ TEST_CASE("a table on the terminal shows so many rows and counts the others, and
   CHECK(lines_with_person(15) == 15);
   CHECK(lines_with_person(all_lines) == 40);
   CHECK(lines_with_person(40) == 40);
+  table.columns.front().heading = "pair";  // means and pairs are results
+  std::ostringstream whole;
+  write_contents_text(whole, {"", {table}}, 15);
+  CHECK_THAT(whole.str(), Contains("P39") && !Contains("more"));
 }
 
 TEST_CASE("the course of a session reads the same in text, HTML and JSON", "[analysis][course]") {

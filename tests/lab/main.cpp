@@ -213,28 +213,38 @@ class Lab {
         [is_on](testing::SimulatedSpidar& spidar) { spidar.switch_amplifier(is_on); });
   }
 
-  // As Ctrl-Z does, but not while the program waits for the mocked kernel: its guardian, which
-  // shares the connection, would read that answer.
-  void suspend_for_a_while() {
+  // Not while it waits for the mocked kernel: program and guardian share the connection, and one
+  // would take the other's answer.
+  static void stop_at_rest(pid_t process) {
     constexpr int patience = 1000;
     for (int i = 0; i < patience; ++i) {
-      kill(child_, SIGSTOP);
+      kill(process, SIGSTOP);
       std::this_thread::sleep_for(std::chrono::milliseconds{1});
-      if (lab::is_at_rest(child_)) {
-        break;
+      if (lab::is_at_rest(process)) {
+        return;
       }
-      kill(child_, SIGCONT);
+      kill(process, SIGCONT);
       std::this_thread::sleep_for(std::chrono::microseconds{1300});
     }
+  }
+
+  // As Ctrl-Z does. The program finds out what became of its loop before the guardian goes on.
+  void suspend_for_a_while() {
+    stop_at_rest(child_);
     std::this_thread::sleep_for(std::chrono::seconds{1});
     const auto without_force = [this] {
       return boards_.front()->log().requests_without_force_at_the_end;
     };
-    for (int i = 0; i < 20 * patience && without_force() < enough_without_force; ++i) {
+    constexpr int patience = 20'000;
+    for (int i = 0; i < patience && without_force() < enough_without_force; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds{1});  // the guardian may be slow
     }
     without_force_while_stopped_ = without_force();
+    const pid_t heir = guardian();
+    stop_at_rest(heir);
     kill(child_, SIGCONT);
+    std::this_thread::sleep_for(std::chrono::milliseconds{100});
+    kill(heir, SIGCONT);
   }
 
   pid_t guardian() const { return lab::youngest_child(child_); }

@@ -255,14 +255,9 @@ RestingFit fit_resting_poles(const std::vector<NearbyDecay>& decays,
   const double unknowns = static_cast<double>(parameters.size()) +
                           2.0 * static_cast<double>(terms_of(start) * std::ssize(decays));
   fit.criterion = schwarz(fit.deviance, unknowns, decays);
-  double left = 0.0;
-  double energy = 0.0;
   for (std::size_t i = 0; i < states.size(); ++i) {
     fit.seen.push_back(seen_at(states[i], parameters, start.front(), series.of(i)));
-    left += states[i].sum_of_squares;
-    energy += series.of(i).energy();
   }
-  fit.explained = 1.0 - left / std::max(energy, 1e-290);
   double values = 0.0;
   double log_variances = 0.0;
   for (std::size_t i = 0; i < states.size(); ++i) {
@@ -319,8 +314,6 @@ Pole noise_errors(const std::vector<NearbyDecay>& decays, const RestingFit& fit)
 OwnPoles deviance_of_own(const std::vector<NearbyDecay>& decays,
                          const std::vector<std::vector<Pole>>& poles) {
   OwnPoles own;
-  double left = 0.0;
-  double energy = 0.0;
   for (std::size_t i = 0; i < decays.size(); ++i) {
     const DecayModel model{decays[i].spectrum, std::ssize(poles[i]), decays[i].lines_hz};
     if (model.data().size() <= model.unknowns()) {
@@ -331,10 +324,7 @@ OwnPoles deviance_of_own(const std::vector<NearbyDecay>& decays,
     const double sum = std::min(state.sum_of_squares, model.data().squaredNorm());
     own.deviance += values * std::log(std::max(sum, 1e-290) / values);
     own.unknowns += 4.0 * static_cast<double>(poles[i].size());
-    left += sum;
-    energy += model.data().squaredNorm();
   }
-  own.explained = 1.0 - left / std::max(energy, 1e-290);
   return own;
 }
 }  // namespace tapstudy::analysis

@@ -33,8 +33,7 @@ struct RestingFit {
   double deviance{};
   double criterion{};
   bool has_converged{};
-  double explained{};  // share of the energy in all spectra
-  double noise{};      // standard deviation of a sample, the geometric mean over decays
+  double noise{};  // standard deviation of a sample, the geometric mean over decays
 };
 
 // Least squares of all decays at once by Gauss-Newton steps on the shared poles; each decay's
@@ -54,7 +53,6 @@ Pole noise_errors(const std::vector<NearbyDecay>& decays, const RestingFit& fit)
 struct OwnPoles {
   double deviance{};
   double unknowns{};
-  double explained{};
 };
 OwnPoles deviance_of_own(const std::vector<NearbyDecay>& decays,
                          const std::vector<std::vector<Pole>>& poles);

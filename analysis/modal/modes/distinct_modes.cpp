@@ -141,6 +141,10 @@ class Neighbourhood {
   // As the taps show them each for itself, or, told apart, all together.
   double criterion_of_several(const std::vector<RepeatedMode>& members,
                               const RestingFit& single) const {
+    return std::min(criterion_of_own(), criterion_together(members, single));
+  }
+
+  double criterion_of_own() const {
     std::vector<std::vector<Pole>> own;
     for (const TapModes& tap : found_.taps) {
       std::vector<Pole> poles;
@@ -151,13 +155,17 @@ class Neighbourhood {
       }
       own.push_back(std::move(poles));
     }
-    double least = std::numeric_limits<double>::infinity();
     try {
       const OwnPoles of_own = deviance_of_own(decays_, own);
-      least = schwarz(of_own.deviance, of_own.unknowns, decays_);
+      return schwarz(of_own.deviance, of_own.unknowns, decays_);
     } catch (const core::InvalidInput&) {
-      least = std::numeric_limits<double>::infinity();  // more poles than the band can tell
+      return std::numeric_limits<double>::infinity();  // more poles than the band can tell
     }
+  }
+
+  double criterion_together(const std::vector<RepeatedMode>& members,
+                            const RestingFit& single) const {
+    constexpr double none = std::numeric_limits<double>::infinity();
     std::vector<RestingPole> together;
     for (const RepeatedMode& mode : found_.modes) {
       if (mode.standing == Standing::agreed && near_.holds(centre_of(mode)) &&
@@ -165,17 +173,17 @@ class Neighbourhood {
         together.push_back({{centre_of(mode), mode.damping_ratio.value}, 1});
       }
     }
-    if (together.size() > 1 && members.size() > 1) {
-      try {
-        const RestingFit several = fit_resting_poles(decays_, together);
-        if (!may_be_series(members) || single.noise > explains_as_much * several.noise) {
-          least = std::min(least, several.criterion);
-        }
-      } catch (const core::InvalidInput&) {
-        return least;
-      }
+    if (together.size() < 2 || members.size() < 2) {
+      return none;
     }
-    return least;
+    try {
+      const RestingFit several = fit_resting_poles(decays_, together);
+      const bool is_needed =
+          !may_be_series(members) || single.noise > explains_as_much * several.noise;
+      return is_needed ? several.criterion : none;
+    } catch (const core::InvalidInput&) {
+      return none;
+    }
   }
 
   // The first terms of one mode's series decay at rates of 1 to 2 or 3, at nearly one frequency.

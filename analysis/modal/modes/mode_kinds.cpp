@@ -127,27 +127,35 @@ bool is_made_as(const Line& made, const RepeatedMode& mode) {
          std::abs(decay_per_s - made.decay_per_s) <= rate_tolerance * made.decay_per_s;
 }
 
-// "2 x 45.9 Hz", "45.9 - 6.9 Hz", or empty.
-std::string made_of(const RepeatedMode& mode, const RepeatedMode& one, const RepeatedMode& other) {
-  const Line a = line_of(one);
-  const Line b = line_of(other);
-  for (int n = 1; n <= highest_multiple; ++n) {
-    if (&one == &other) {
-      if (n > 1 && is_made_as({n * a.frequency_hz, n * a.decay_per_s}, mode)) {
-        return fmt::format("{} times {:.5g} Hz", n, a.frequency_hz);
-      }
-      continue;
+// "2 times 45.9 Hz", or empty.
+std::string multiple_of(const RepeatedMode& mode, const Line& line) {
+  for (int n = 2; n <= highest_multiple; ++n) {
+    if (is_made_as({n * line.frequency_hz, n * line.decay_per_s}, mode)) {
+      return fmt::format("{} times {:.5g} Hz", n, line.frequency_hz);
     }
+  }
+  return {};
+}
+
+// "45.9 Hz - 6.9 Hz", "45.9 Hz + 2 times 6.9 Hz", or empty.
+std::string sum_of(const RepeatedMode& mode, const Line& a, const Line& b) {
+  for (int n = 1; n <= highest_multiple; ++n) {
+    const std::string times = n > 1 ? fmt::format("{} times ", n) : "";
     for (const double sign : {-1.0, 1.0}) {
       const Line made{a.frequency_hz + sign * n * b.frequency_hz,
                       a.decay_per_s + n * b.decay_per_s};
       if (made.frequency_hz > 0.0 && is_made_as(made, mode)) {
         return fmt::format("{:.5g} Hz {} {}{:.5g} Hz", a.frequency_hz, sign < 0.0 ? "-" : "+",
-                           n > 1 ? fmt::format("{} times ", n) : "", b.frequency_hz);
+                           times, b.frequency_hz);
       }
     }
   }
   return {};
+}
+
+std::string made_of(const RepeatedMode& mode, const RepeatedMode& one, const RepeatedMode& other) {
+  return &one == &other ? multiple_of(mode, line_of(one))
+                        : sum_of(mode, line_of(one), line_of(other));
 }
 
 std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedMode>& modes) {

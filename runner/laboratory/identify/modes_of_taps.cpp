@@ -18,6 +18,7 @@ namespace {
 constexpr double default_low_hz = 10.0;
 constexpr double sinusoid_high_hz = 1000.0;
 constexpr double least_high_hz = 100.0;
+constexpr double most_high_hz = 2000.0;  // twice what is felt; what lies above is told
 constexpr double above_highest_peak = 1.25;
 constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
 constexpr double max_rate_share = 0.47;
@@ -41,8 +42,8 @@ analysis::Band band_sought(const TapQuestion& question,
   }
   const double follows_hz = std::max(
       least_high_hz, above_highest_peak * analysis::highest_peak_hz(decays, default_low_hz));
-  return {default_low_hz,
-          std::min({usable_rate_share * rate_hz, follows_hz, band_limit_hz.value_or(follows_hz)})};
+  return {default_low_hz, std::min({usable_rate_share * rate_hz, follows_hz,
+                                    band_limit_hz.value_or(most_high_hz)})};
 }
 }  // namespace
 

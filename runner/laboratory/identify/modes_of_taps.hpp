@@ -9,9 +9,9 @@ namespace tapstudy::runner {
 // Throws InvalidInput where more is asked for than the rate allows.
 void check_band(const TapQuestion& question, double rate_hz);
 // The band in which modes are sought: what was asked for, or from 10 Hz to somewhat above the
-// highest peak of the decays' spectra, at most the protocol's band limit and as far as the rate
-// allows before sensors' own filters act. Adds a remark if more than 1 % of the decays' energy lies
-// outside.
+// highest peak of the decays' spectra, at most 2000 Hz or the protocol's band limit and as far as
+// the rate allows before sensors' own filters act. Adds a remark if more than 1 % of the decays'
+// energy lies outside.
 analysis::Band modal_band(const TapQuestion& question, const std::vector<IdentifiedTap>& taps,
                           std::optional<double> band_limit_hz, std::vector<std::string>& remarks);
 // The same for a tap's sinusoid, up to 1000 Hz or as far as the rate allows.

@@ -165,7 +165,7 @@ class Neighbourhood {
 
   double criterion_together(const std::vector<RepeatedMode>& members,
                             const RestingFit& single) const {
-    constexpr double none = std::numeric_limits<double>::infinity();
+    constexpr double impossible = std::numeric_limits<double>::infinity();
     std::vector<RestingPole> together;
     for (const RepeatedMode& mode : found_.modes) {
       if (mode.standing == Standing::agreed && near_.holds(centre_of(mode)) &&
@@ -174,15 +174,15 @@ class Neighbourhood {
       }
     }
     if (together.size() < 2 || members.size() < 2) {
-      return none;
+      return impossible;
     }
     try {
       const RestingFit several = fit_resting_poles(decays_, together);
       const bool is_needed =
           !may_be_series(members) || single.noise > explains_as_much * several.noise;
-      return is_needed ? several.criterion : none;
+      return is_needed ? several.criterion : impossible;
     } catch (const core::InvalidInput&) {
-      return none;
+      return impossible;
     }
   }
 

@@ -21,29 +21,39 @@ void TapRemarks::add(const std::string& file, const analysis::TapRemark& remark)
   }
 }
 
+// "taps.wav at 0.300, 0.750 s; more.wav at 0.200": the first taps of a kind, each once.
+std::string TapRemarks::places_of(const std::vector<Noticed>& kind) {
+  std::set<std::pair<std::string, double>> taps;
+  std::string places;
+  std::string file;
+  for (const Noticed& one : kind) {
+    if (taps.size() == most_places || !taps.emplace(one.file, one.remark.at_s).second) {
+      continue;
+    }
+    const bool is_same_file = !places.empty() && file == one.file;
+    places += places.empty() ? "" : is_same_file ? ", " : " s; ";
+    places += fmt::format("{}{:.3f}", is_same_file ? "" : one.file + " at ", one.remark.at_s);
+    file = one.file;
+  }
+  return places;
+}
+
+std::string TapRemarks::sentence_of(const std::vector<Noticed>& kind, int impacts) {
+  std::set<std::pair<std::string, double>> taps;
+  for (const Noticed& one : kind) {
+    taps.emplace(one.file, one.remark.at_s);
+  }
+  const analysis::TapRemark& first = kind.front().remark;
+  const bool has_detail = taps.size() == 1 && !first.detail.empty();
+  return fmt::format("{} of {} taps: {}{} ({} s{})", taps.size(), impacts, first.kind,
+                     has_detail ? ", " + first.detail : "", places_of(kind),
+                     taps.size() > most_places ? " ..." : "");
+}
+
 std::vector<std::string> TapRemarks::sentences(int impacts) const {
   std::vector<std::string> all;
   for (const std::vector<Noticed>& kind : kinds_) {
-    std::set<std::pair<std::string, double>> taps;
-    std::string places;
-    const std::string* file = nullptr;
-    for (const Noticed& one : kind) {
-      if (!taps.emplace(one.file, one.remark.at_s).second || taps.size() > most_places) {
-        continue;
-      }
-      const bool is_same_file = file != nullptr && *file == one.file;
-      places += fmt::format("{}{}{:.3f}",
-                            places.empty() ? ""
-                            : is_same_file ? ", "
-                                           : " s; ",
-                            is_same_file ? "" : one.file + " at ", one.remark.at_s);
-      file = &one.file;
-    }
-    const analysis::TapRemark& first = kind.front().remark;
-    const bool is_one = taps.size() == 1 && !first.detail.empty();
-    all.push_back(fmt::format("{} of {} taps: {}{}{} ({} s{})", taps.size(), impacts, first.kind,
-                              is_one ? ", " : "", is_one ? first.detail : "", places,
-                              taps.size() > most_places ? " ..." : ""));
+    all.push_back(sentence_of(kind, impacts));
   }
   return all;
 }

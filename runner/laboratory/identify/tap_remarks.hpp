@@ -17,6 +17,9 @@ class TapRemarks {
     std::string file;
     analysis::TapRemark remark;
   };
+  static std::string places_of(const std::vector<Noticed>& kind);
+  static std::string sentence_of(const std::vector<Noticed>& kind, int impacts);
+
   std::vector<std::vector<Noticed>> kinds_;
 };
 }  // namespace tapstudy::runner

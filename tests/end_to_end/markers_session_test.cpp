@@ -289,8 +289,9 @@ assert max(y for _, _, y, _ in forces) > 0.5
 )py";
 }  // namespace
 
+// Not tagged [threads]: the library's own are not instrumented.
 TEST_CASE("inlets of the Lab Streaming Layer get the markers and every tick's force",
-          "[end_to_end][markers][threads]") {
+          "[end_to_end][markers]") {
   const char* const library = std::getenv("LIBLSL");
   if (library == nullptr) {
     WARN("NOT TESTED: LIBLSL names no library (one is in npm's lsl.js@1)");

@@ -39,6 +39,10 @@ double reach_of(const RepeatedMode& mode) {
                   std::max(reach_share * centre_of(mode), reach_bandwidths * bandwidth_hz));
 }
 
+// In a longer decay a mode is so well known that what its neighbours leave in its surroundings
+// shifts the fit of it alone by more than its interval: there modes stay as the taps show them.
+constexpr double longest_examined_s = 0.3;
+
 class Neighbourhood {
  public:
   Neighbourhood(const RepeatedMode& strongest, const std::vector<FreeDecay>& decays,
@@ -46,6 +50,9 @@ class Neighbourhood {
       : strongest_{strongest}, found_{found}, reach_hz_{reach_of(strongest)} {
     const double centre_hz = centre_of(strongest);
     for (std::size_t i = 0; i < decays.size(); ++i) {
+      if (decays[i].duration_s() >= longest_examined_s) {
+        throw core::InvalidInput{"a decay is too long for one mode's fit"};
+      }
       const FreeDecay decay = shortened_for({centre_hz, centre_hz}, decays[i]);
       const double half_hz =
           std::max(around_reach * reach_hz_, least_bins / 2.0 / decay.duration_s());

@@ -157,19 +157,25 @@ double error_of(const Eigen::Vector2d& slope, const Eigen::Matrix2d& covariance)
   return std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
 }
 
-// Sets the standard errors of a pole from the covariance of the real and imaginary part of its
-// logarithm, ln z or s, in the unit of 1 / unit_s.
-void set_pole_errors(const Complex& log_z, const Eigen::Matrix2d& covariance, double unit_s,
-                     FittedMode& mode) {
+}  // namespace
+
+Pole errors_of_pole(const Complex& log_z, const Eigen::Matrix2d& covariance, double unit_s) {
   const double size = std::abs(log_z);
   const Eigen::Vector2d frequency_slope{log_z.real() / size, log_z.imag() / size};
   // d(-Re / |s|)
   const double cube = size * size * size;
   const Eigen::Vector2d ratio_slope{-log_z.imag() * log_z.imag() / cube,
                                     log_z.real() * log_z.imag() / cube};
-  mode.frequency_error_hz =
-      error_of(frequency_slope, covariance) / unit_s / (2.0 * std::numbers::pi);
-  mode.ratio_error = error_of(ratio_slope, covariance);
+  return {error_of(frequency_slope, covariance) / unit_s / (2.0 * std::numbers::pi),
+          error_of(ratio_slope, covariance)};
+}
+
+namespace {
+void set_pole_errors(const Complex& log_z, const Eigen::Matrix2d& covariance, double unit_s,
+                     FittedMode& mode) {
+  const Pole errors = errors_of_pole(log_z, covariance, unit_s);
+  mode.frequency_error_hz = errors.frequency_hz;
+  mode.ratio_error = errors.damping_ratio;
   mode.decay_error_per_s = std::sqrt(std::max(0.0, covariance(0, 0))) / unit_s;
 }
 
@@ -195,27 +201,34 @@ FittedMode mode_of(const DecayModel& model, const DecayModel::State& state,
   return mode;
 }
 
+}  // namespace
+
+void set_residual(const DecayModel& model, const DecayModel::State& state, DecayFit& fit) {
+  const auto values = static_cast<double>(model.data().size());
+  fit.degrees_of_freedom = std::max(1.0, values - static_cast<double>(model.unknowns()));
+  fit.sum_of_squares = state.sum_of_squares;
+  // a bin's real and imaginary parts have half of N sigma^2 each
+  fit.noise = std::sqrt(2.0 * fit.sum_of_squares / fit.degrees_of_freedom / model.length());
+  fit.explained = 1.0 - state.sum_of_squares / std::max(model.data().squaredNorm(), 1e-300);
+  const Eigen::VectorXd all = state.basis * state.shares;
+  fit.fitted = all.head(all.size() / 2) + Complex{0.0, 1.0} * all.tail(all.size() / 2);
+}
+
+namespace {
 // All of one decay's poles taken as free.
 DecayFit described(const DecayModel& model, const DecayModel::State& state, bool has_converged) {
-  const double freedom = static_cast<double>(model.data().size() - model.unknowns());
+  DecayFit fit;
+  set_residual(model, state, fit);
+  fit.has_converged = has_converged;
   const Eigen::MatrixXd jacobian = model.jacobian(state);
   const Eigen::VectorXd scale = jacobian.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   const Eigen::MatrixXd scaled = jacobian * scale.asDiagonal();
-  const double variance = state.sum_of_squares / freedom;
+  const double variance = fit.sum_of_squares / fit.degrees_of_freedom;
   const Eigen::MatrixXd inverse = core::pseudo_inverse(scaled.transpose() * scaled) * variance;
   const Eigen::MatrixXd covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
-  DecayFit fit;
   for (Eigen::Index k = 0; k < model.poles(); ++k) {
     fit.modes.push_back(mode_of(model, state, covariance, k));
   }
-  // a bin's real and imaginary parts have half of N sigma^2 each
-  fit.noise = std::sqrt(2.0 * variance / model.length());
-  fit.explained = 1.0 - state.sum_of_squares / std::max(model.data().squaredNorm(), 1e-300);
-  fit.sum_of_squares = state.sum_of_squares;
-  fit.degrees_of_freedom = freedom;
-  fit.has_converged = has_converged;
-  const Eigen::VectorXd all = state.basis * state.shares;
-  fit.fitted = all.head(all.size() / 2) + Complex{0.0, 1.0} * all.tail(all.size() / 2);
   return fit;
 }
 

@@ -22,6 +22,11 @@ bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared);
 Eigen::MatrixXd information_on_shared(const std::vector<WeightedDecay>& decays,
                                       Eigen::Index shared);
 
+// The standard errors of a pole's frequency [Hz] and damping ratio from the covariance of the real
+// and imaginary part of its logarithm, ln z or s, in the unit of 1 / unit_s.
+Pole errors_of_pole(const std::complex<double>& log_z, const Eigen::Matrix2d& covariance,
+                    double unit_s);
+
 // One damped oscillation as fitted: Re(c z^n) = amplitude e^(-decay t) cos(w t + phase).
 struct FittedMode {
   Pole pole;
@@ -45,6 +50,10 @@ struct DecayFit {
   bool has_converged{};
   Eigen::VectorXcd fitted;  // the spectrum's values by the modes and the nuisance terms
 };
+
+// Sets what the residual of a state says: noise, explained, sum_of_squares, degrees_of_freedom,
+// fitted.
+void set_residual(const DecayModel& model, const DecayModel::State& state, DecayFit& fit);
 
 // Maximum likelihood in white noise from these poles on (descend, decay_model.hpp).
 // Standard errors are those of the Cramer-Rao bound, with the noise of the residual. Steady lines

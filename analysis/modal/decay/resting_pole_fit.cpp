@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "analysis/modal/decay/decay_fit.hpp"
 #include "analysis/modal/decay/decay_model.hpp"
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
@@ -80,7 +81,6 @@ class Series {
 
   double values() const { return static_cast<double>(model_.data().size()); }
   double energy() const { return model_.data().squaredNorm(); }
-  double rate_hz() const { return model_.rate_hz(); }
 
  private:
   std::vector<RestingPole> poles_;
@@ -131,13 +131,6 @@ class SharedSeries {
     return all;
   }
 
-  double values() const {
-    double sum = 0.0;
-    for (const Series& one : series_) {
-      sum += one.values();
-    }
-    return sum;
-  }
   const Series& of(std::size_t i) const { return series_[i]; }
 
  private:
@@ -299,16 +292,7 @@ Pole noise_errors(const std::vector<NearbyDecay>& decays, const RestingFit& fit)
   const Equations sum =
       sum_of(series.equations(parameters, series.at(parameters)), parameters.size());
   const Eigen::Matrix2d covariance = core::pseudo_inverse(sum.matrix).topLeftCorner<2, 2>();
-  const double size = std::hypot(parameters[0], parameters[1]);
-  const Eigen::Vector2d along_frequency =
-      Eigen::Vector2d{parameters[0], parameters[1]} / size / (2.0 * std::numbers::pi);
-  const Eigen::Vector2d along_ratio =
-      Eigen::Vector2d{-parameters[1] * parameters[1], parameters[0] * parameters[1]} /
-      (size * size * size);
-  const auto error = [&](const Eigen::Vector2d& along) {
-    return std::sqrt(std::max(0.0, along.dot(covariance * along)));
-  };
-  return {error(along_frequency), error(along_ratio)};
+  return errors_of_pole({parameters[0], parameters[1]}, covariance, 1.0);
 }
 
 OwnPoles deviance_of_own(const std::vector<NearbyDecay>& decays,

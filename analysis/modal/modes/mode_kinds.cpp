@@ -191,7 +191,6 @@ struct Others {
   int count{};
   double low_hz{};
   double high_hz{};
-  std::string first_why;
 };
 
 std::string places(const Others& others) {

@@ -301,16 +301,7 @@ TapModes joined(const FreeDecay& decay, const Band& band, const std::vector<TapM
     poles.push_back(fitted.pole);
   }
   const DecayModel model{all.spectrum, std::ssize(poles), all.lines_hz};
-  const DecayModel::State state = model.at(model.logs_of(poles));
-  const auto values = static_cast<double>(model.data().size());
-  all.fit.degrees_of_freedom = std::max(1.0, values - static_cast<double>(model.unknowns()));
-  all.fit.sum_of_squares = state.sum_of_squares;
-  all.fit.noise =
-      std::sqrt(2.0 * state.sum_of_squares / all.fit.degrees_of_freedom / model.length());
-  all.fit.explained = 1.0 - state.sum_of_squares / std::max(model.data().squaredNorm(), 1e-300);
-  const Eigen::VectorXd fitted = state.basis * state.shares;
-  all.fit.fitted = fitted.head(fitted.size() / 2) +
-                   std::complex<double>{0.0, 1.0} * fitted.tail(fitted.size() / 2);
+  set_residual(model, model.at(model.logs_of(poles)), all.fit);
   return all;
 }
 }  // namespace tapstudy::analysis

@@ -118,7 +118,8 @@ Store Store::from_journal(const std::string& directory) {
   const JournalContent content = read_journal(directory);
   Store store{Database::in_memory(journal_file(directory)), std::nullopt};
   store.create(content.study);
-  std::map<std::int64_t, std::int64_t> new_ids;  // journals of 0.1 lack sessions without an answer
+  std::map<std::int64_t, std::int64_t>
+      new_ids;  // before 0.3 journals lack sessions without an answer
   for (SessionRow session : content.sessions) {
     const std::int64_t id = session.id;
     session.resumes.reset();

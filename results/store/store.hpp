@@ -123,7 +123,8 @@ class Store {
   void check_is_in_place(const TrialRow& trial);
   void add_to_journal(const TrialRecord& record);
   void journal_failed_calls();
-  void journal(const JournalEntries& entries, std::int64_t session_id);
+  void journal(const std::vector<SessionRow>& sessions_of_entries, const JournalEntries& entries);
+  void journal_sessions();
   void insert_action(const OperatorActionRow& action);
   int insert_correction(const CorrectionRow& correction);  // which of the trial's, from 1
   void add_and_journal(JournalEntries entries, std::int64_t session_id,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "results/store/store.hpp"
@@ -79,18 +78,12 @@ bool Store::has_sessions(const std::string& participant_id) {
   return latest_session(participant_id).has_value();
 }
 
-namespace {
 // Once they are committed: what is rolled back must not be in the journal.
-void journal_sessions(Store& store, Database& database, std::optional<Journal>& journal) {
-  if (!journal || database.is_in_transaction()) {
-    return;
-  }
-  const auto of_study = [&store] { return store.study(); };
-  if (!journal->complete(of_study, store.sessions(), {})) {
-    journal->complete(of_study, store.sessions(), store.entries_for_journal());
+void Store::journal_sessions() {
+  if (journal_ && !database_.is_in_transaction()) {
+    journal(sessions(), {});
   }
 }
-}  // namespace
 
 void Store::in_one_transaction(const std::function<void()>& act) {
   {
@@ -98,7 +91,7 @@ void Store::in_one_transaction(const std::function<void()>& act) {
     act();
     all.commit();
   }
-  journal_sessions(*this, database_, journal_);
+  journal_sessions();
 }
 
 void Store::add_session(SessionRow& session) {
@@ -134,7 +127,7 @@ void Store::add_session(SessionRow& session) {
       .finish();
   session.id = database_.last_row_id();
   all.commit();
-  journal_sessions(*this, database_, journal_);
+  journal_sessions();
 }
 
 SaveOutcome Store::add_trial(const TrialRecord& record) {
@@ -156,9 +149,9 @@ SaveOutcome Store::add_trial(const TrialRecord& record) {
 
 void Store::add_to_journal(const TrialRecord& record) {
   journal_failed_calls();
-  if (record.response && record.trial.status == TrialStatus::answered) {
-    journal({.answers = {{record.trial, record.alternatives, *record.response}}},
-            record.trial.session_id);
+  if (journal_ && record.response && record.trial.status == TrialStatus::answered) {
+    journal({session_of(record.trial.session_id)},
+            {.answers = {{record.trial, record.alternatives, *record.response}}});
   }
 }
 
@@ -333,13 +326,11 @@ std::vector<FormAnswerRow> Store::forms_for_journal() {
   return answers;
 }
 
-// Appends the entries of a session to the journal.
-void Store::journal(const JournalEntries& entries, std::int64_t session_id) {
-  if (!journal_) {
-    return;
-  }
+// Appends what of it the journal lacks.
+void Store::journal(const std::vector<SessionRow>& sessions_of_entries,
+                    const JournalEntries& entries) {
   const auto of_study = [this] { return study(); };
-  if (!journal_->complete(of_study, {session_of(session_id)}, entries)) {
+  if (!journal_->complete(of_study, sessions_of_entries, entries)) {
     journal_->complete(of_study, sessions(), entries_for_journal());
   }
 }
@@ -361,7 +352,9 @@ void Store::insert_action(const OperatorActionRow& action) {
 void Store::journal_failed_calls() {
   for (FailedCall& one : failed_calls_) {
     if (!one.is_journalled) {
-      journal(one.entries, one.session_id);
+      if (journal_) {
+        journal({session_of(one.session_id)}, one.entries);
+      }
       one.is_journalled = true;
     }
   }

@@ -37,7 +37,6 @@ std::string note_of(const analysis::RepeatedMode& mode) {
                                        mode.at_tap->frequency_hz, mode.at_tap->damping_ratio)
                          : mode.why;
     case Standing::line:
-      return "no mode: " + mode.why;
     case Standing::combination:
       return "no mode: " + mode.why;
     case Standing::background:

@@ -150,7 +150,7 @@ std::string caution_of(const std::optional<ModelRatios>& by_mode, const std::str
   if (by_mode->interpolated.empty()) {
     return {};
   }
-  return fmt::format("{}# modal_ratios of mode {} interpolated: not measured\n", indent,
+  return fmt::format("{}# modal_ratios of these modes are interpolated, not measured: {}\n", indent,
                      fmt::join(by_mode->interpolated, ", "));
 }
 

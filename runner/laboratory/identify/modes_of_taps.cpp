@@ -130,9 +130,7 @@ double median_duration_s(const std::vector<IdentifiedTap>& taps) {
   }
   return analysis::quantile(durations_s, 0.5);
 }
-}  // namespace
 
-namespace {
 // Part by part of the band; taps that are too short for all of them are left out.
 analysis::ModesOfTaps found_in_parts(const analysis::Band& band, std::vector<IdentifiedTap>& taps,
                                      TapRemarks& remarks) {

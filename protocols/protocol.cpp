@@ -27,6 +27,10 @@ const Stimulus& Protocol::stimulus(const std::string& name) const {
 const Block& Protocol::block(const std::string& name) const {
   return named(blocks, name, "block");
 }
+const Block* Protocol::find_block(const std::string& name) const {
+  const auto found = std::ranges::find(blocks, name, &Block::name);
+  return found == blocks.end() ? nullptr : &*found;
+}
 
 bool may_procedures_end_early(const Block& block) {
   return block.comparison && std::ranges::any_of(block.comparison->tracks, [](const auto& track) {

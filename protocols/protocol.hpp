@@ -292,5 +292,6 @@ struct Protocol {
   // Throws InvalidInput listing the known stimuli.
   const Stimulus& stimulus(const std::string& name) const;
   const Block& block(const std::string& name) const;
+  const Block* find_block(const std::string& name) const;  // nullptr if there is none
 };
 }  // namespace tapstudy::protocols

@@ -51,4 +51,9 @@ std::string cut_to(std::string_view text, std::size_t max_bytes) {
 std::string shortened(std::string_view text, std::size_t max_bytes) {
   return text.size() <= max_bytes ? std::string{text} : cut_to(text, max_bytes) + "…";
 }
+
+std::string quoted_name(std::string_view name) {
+  constexpr std::size_t longest = 60;
+  return "'" + shortened(name, longest) + "'";
+}
 }  // namespace tapstudy::core

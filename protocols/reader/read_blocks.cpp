@@ -300,7 +300,7 @@ void check_block(MapReader& reader, const Block& block, const Protocol& protocol
     check_targets(reader, protocol, block);
     check_criterion(reader, block);
   }
-  if (std::ranges::find(protocol.blocks, block.name, &Block::name) != protocol.blocks.end()) {
+  if (protocol.find_block(block.name) != nullptr) {
     reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
   }
 }

@@ -322,8 +322,8 @@ void read_hypotheses(MapReader& top, Protocol& protocol) {
             {{"accuracy_above_chance", Claim::accuracy_above_chance},
              {"chosen_above_chance", Claim::chosen_above_chance},
              {"rated_highest", Claim::rated_highest}});
-        const auto block = std::ranges::find(protocol.blocks, hypothesis.block, &Block::name);
-        const bool is_known = block != protocol.blocks.end() && block->task != nullptr;
+        const Block* const block = protocol.find_block(hypothesis.block);
+        const bool is_known = block != nullptr && block->task != nullptr;
         if (hypothesis.claim != Claim::accuracy_above_chance) {
           hypothesis.stimulus = reader.word(
               {"stimulus", "stimulus of the block that is expected to be chosen, or rated highest"},

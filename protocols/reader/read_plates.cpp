@@ -138,8 +138,7 @@ void read_mesh(MapReader& mesh, core::Meshing& meshing) {
 }
 
 // Read once, however many plates have it: what is modelled is what is stored.
-const SurfaceSource& surface_of(const std::string& file, const ReadFile& read_file,
-                                Protocol& protocol) {
+SurfaceSource& surface_of(const std::string& file, const ReadFile& read_file, Protocol& protocol) {
   const auto known = std::ranges::find(protocol.surfaces, file, &SurfaceSource::file);
   if (known != protocol.surfaces.end()) {
     return *known;
@@ -184,8 +183,9 @@ core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Prot
                 return;  // its size would be wrong
               }
               try {
-                const SurfaceSource& source = surface_of(file, read_file, protocol);
-                core::TriangleSurface surface = read_surface(source, metres_per_unit);
+                SurfaceSource& source = surface_of(file, read_file, protocol);
+                auto [surface, noise] = read_surface(source, metres_per_unit);
+                source.noise = noise;
                 for (auto point : surface.points_m.rowwise()) {
                   point = (pose * point.transpose()).transpose().eval();
                 }

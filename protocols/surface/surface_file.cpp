@@ -22,7 +22,6 @@
 #include "core/text/plain_text.hpp"
 #include "protocols/surface/cut_polygon.hpp"
 #include "protocols/surface/join_points.hpp"
-#include "protocols/surface/surface_noise.hpp"
 #include "protocols/surface/surface_soup.hpp"
 #include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
@@ -292,19 +291,14 @@ core::TriangleSurface of_used_points(const std::vector<Vec3>& points,
   return surface;
 }
 
-struct SurfaceAndNoise {
-  core::TriangleSurface surface;
-  SurfaceNoise noise;
-};
-
 // Points in the order of their coordinates, each triangle from its first corner, triangles in the
 // order of these: meshers build on the order, which is that of the writing program, so that without
 // it the same surface in two files is two bodies.
-SurfaceAndNoise in_canonical_order(const std::vector<std::array<std::size_t, 3>>& triangles,
-                                   const SurfaceSoup& soup) {
+ReadSurface in_canonical_order(const std::vector<std::array<std::size_t, 3>>& triangles,
+                               const SurfaceSoup& soup) {
   const DistinctPoints distinct = distinct_points(triangles, soup);
   const std::vector<std::size_t> places = without_noise(distinct.points);
-  SurfaceAndNoise read{{}, noise_among(distinct.points, places)};
+  ReadSurface read{{}, noise_among(distinct.points, places)};
   std::vector<std::array<std::size_t, 3>> numbered;
   for (const auto& triangle : triangles) {
     std::array<std::size_t, 3> corners{};
@@ -321,28 +315,11 @@ SurfaceAndNoise in_canonical_order(const std::vector<std::array<std::size_t, 3>>
   read.surface = of_used_points(distinct.points, std::move(numbered));
   return read;
 }
-SurfaceAndNoise triangulated(SurfaceSoup soup, const std::string& file, double metres_per_unit) {
-  scale(soup, file, metres_per_unit);
-  std::vector<std::array<std::size_t, 3>> triangles;
-  for (const auto& polygon : soup.polygons) {
-    const auto cut = triangles_of(from_first_corner(polygon, soup), soup, file);
-    triangles.insert(triangles.end(), cut.begin(), cut.end());
-  }
-  if (triangles.size() > max_triangles) {
-    throw core::InvalidInput{
-        fmt::format("{}: {} triangles (at most {})", file, triangles.size(), max_triangles)};
-  }
-  SurfaceAndNoise read = in_canonical_order(triangles, soup);
-  if (read.surface.triangles.rows() == 0) {
-    throw core::InvalidInput{file + ": no triangle of it has an area"};
-  }
-  return read;
-}
 }  // namespace
 
 SurfaceSource surface_source(std::string file, std::string bytes) {
   std::string sha256 = core::sha256(bytes);
-  return {std::move(file), std::move(bytes), std::move(sha256)};
+  return {std::move(file), std::move(bytes), std::move(sha256), {}};
 }
 
 std::string SurfaceNoise::describe() const {
@@ -360,18 +337,22 @@ std::string SurfaceNoise::describe() const {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
-  return triangulated(soup_of(source), source.file, metres_per_unit).surface;
-}
-
-// In a unit of the surface's own, as its coordinates may be beyond all sizes in metres.
-SurfaceNoise noise_of(const SurfaceSource& source) {
+ReadSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
   SurfaceSoup soup = soup_of(source);
-  double farthest = 0.0;
-  for (const Vec3& point : soup.points) {
-    farthest = std::max(farthest, point.cwiseAbs().maxCoeff());
+  scale(soup, source.file, metres_per_unit);
+  std::vector<std::array<std::size_t, 3>> triangles;
+  for (const auto& polygon : soup.polygons) {
+    const auto cut = triangles_of(from_first_corner(polygon, soup), soup, source.file);
+    triangles.insert(triangles.end(), cut.begin(), cut.end());
   }
-  const double unit = farthest > 0.0 ? std::pow(10.0, -std::ceil(std::log10(farthest))) : 1.0;
-  return triangulated(std::move(soup), source.file, unit).noise;
+  if (triangles.size() > max_triangles) {
+    throw core::InvalidInput{
+        fmt::format("{}: {} triangles (at most {})", source.file, triangles.size(), max_triangles)};
+  }
+  ReadSurface read = in_canonical_order(triangles, soup);
+  if (read.surface.triangles.rows() == 0) {
+    throw core::InvalidInput{source.file + ": no triangle of it has an area"};
+  }
+  return read;
 }
 }  // namespace tapstudy::protocols

@@ -5,11 +5,25 @@
 
 #include "core/geometry/triangle_surface.hpp"
 namespace tapstudy::protocols {
+// What a surface's file has in excess of the body, which its reading drops.
+struct SurfaceNoise {
+  int points{};                  // that differ by noise from others, which take their places
+  double farthest{};             // of them from the others, as a share of the surface's size
+  int without_area{};            // triangles with two corners in one point
+  std::string describe() const;  // empty: there is nothing
+};
+
 // The complete contents of a surface file: stored with the study that uses it.
 struct SurfaceSource {
   std::string file;  // as the protocol names it
   std::string bytes;
-  std::string sha256;  // of the bytes
+  std::string sha256;    // of the bytes
+  SurfaceNoise noise{};  // once it was read
+};
+
+struct ReadSurface {
+  core::TriangleSurface surface;
+  SurfaceNoise noise;
 };
 
 // The bytes of a file that a protocol names. Throws InvalidInput if there is none.
@@ -24,5 +38,5 @@ SurfaceSource surface_source(std::string file, std::string bytes);
 // in the order of their coordinates: the same surface gives the same numbers whatever its format,
 // its unit and its order. Throws InvalidInput for other formats, with what converts them, for a
 // file that is not of its format, and if a face cannot be triangulated.
-core::TriangleSurface read_surface(const SurfaceSource& source, double metres_per_unit);
+ReadSurface read_surface(const SurfaceSource& source, double metres_per_unit);
 }  // namespace tapstudy::protocols

@@ -11,7 +11,6 @@
 #include "results/store/recorder.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
-#include "runner/session/engine/stored_names.hpp"
 #include "runner/session/operators/operator_desk.hpp"
 #include "runner/studies/stored_study.hpp"
 #include "runner/terminal/session_lock.hpp"
@@ -101,10 +100,7 @@ struct CheckedStudy {
 // Before anything is written, to the journal either.
 CheckedStudy checked_study(const std::string& directory) {
   results::Store store = results::Store::open_existing(directory);
-  CheckedStudy checked{store.study(), {}};
-  checked.protocol = stored_protocol(store);
-  check_names(store, checked.protocol);
-  return checked;
+  return {store.study(), checked_protocol(store)};
 }
 
 void amend(const AmendOptions& options) {

@@ -13,7 +13,6 @@
 #include "core/model/progress.hpp"
 #include "core/techniques/compensated.hpp"
 #include "core/techniques/technique.hpp"
-#include "protocols/surface/surface_noise.hpp"
 #include "runner/session/stimuli/stimulus_family.hpp"
 #include "runner/studies/counted.hpp"
 namespace tapstudy::runner {
@@ -241,7 +240,7 @@ constexpr double tolerated_error = 0.05;  // of a frequency
 std::string describe_noise(const protocols::Protocol& protocol) {
   std::string lines;
   for (const protocols::SurfaceSource& source : protocol.surfaces) {
-    const std::string noise = protocols::noise_of(source).describe();
+    const std::string noise = source.noise.describe();
     lines += noise.empty() ? "" : fmt::format("  surface {}: {}\n", source.file, noise);
   }
   return lines;

@@ -12,7 +12,6 @@
 #include "results/store/study_queries.hpp"
 #include "runner/build_info/build_info.hpp"
 #include "runner/commands/command_line.hpp"
-#include "runner/session/engine/stored_names.hpp"
 #include "runner/session/stimuli/model_library.hpp"
 #include "runner/studies/protocol_tables.hpp"
 #include "runner/studies/stored_results.hpp"
@@ -78,8 +77,7 @@ std::vector<results::FormText> form_texts(const protocols::Protocol& protocol) {
 
 results::StudyExport study_export(results::Store& store, bool has_tables) {
   const results::StudyRow study = store.study();
-  const protocols::Protocol protocol = stored_protocol(store);
-  check_names(store, protocol);
+  const protocols::Protocol protocol = checked_protocol(store);
   StimulusTables stimuli = stimulus_tables(protocol, user_model_cache());
   if (has_tables && !stimuli.without_model.empty()) {
     warn(

@@ -10,7 +10,6 @@
 #include "core/files/output_files.hpp"
 #include "core/model/vtu_file.hpp"
 #include "protocols/reader/read_protocol.hpp"
-#include "protocols/surface/surface_noise.hpp"
 #include "runner/commands/check_models.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/commands/shared_options.hpp"
@@ -52,7 +51,7 @@ void add_errors(const core::FrequencyErrors& errors, nlohmann::ordered_json& jso
 
 void add_noise(const protocols::Protocol& protocol, nlohmann::ordered_json& json) {
   for (const protocols::SurfaceSource& source : protocol.surfaces) {
-    const protocols::SurfaceNoise noise = protocols::noise_of(source);
+    const protocols::SurfaceNoise& noise = source.noise;
     if (!noise.describe().empty()) {
       json["surface_noise"].push_back({{"file", source.file},
                                        {"points_joined", noise.points},

@@ -7,7 +7,6 @@
 #include "results/store/redacted_copy.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
-#include "runner/session/engine/stored_names.hpp"
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -33,8 +32,7 @@ std::set<std::pair<std::string, std::string>> items_without_text(
 void redact(const RedactOptions& options) {
   core::check_is_new(options.out);
   results::Store store = results::Store::open_existing(options.directory);
-  const protocols::Protocol protocol = stored_protocol(store);
-  check_names(store, protocol);
+  const protocols::Protocol protocol = checked_protocol(store);
   core::write_new_directory(options.out, [&](const std::string& unfinished) {
     results::write_redacted_copy(options.directory, unfinished, items_without_text(protocol));
   });

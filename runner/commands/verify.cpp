@@ -292,9 +292,9 @@ std::string print_published(const PublishedReport& report) {
     fmt::print("report.json      not compared: {}\n", report.not_compared);
     return "";
   }
-  for (std::size_t i = 0; i < std::min(report.differences.size(), max_printed); ++i) {
-    fmt::print("differs: {}\n", report.differences[i]);
-  }
+  const std::string fault = print_wrong(
+      report.differences,
+      "differs: ", "places where its report differs from a regenerated one (is it older?)");
   for (const std::string& sentence : report.added) {
     fmt::print("report.json      lacks what this version says of earlier ones: {}\n", sentence);
   }
@@ -302,8 +302,7 @@ std::string print_published(const PublishedReport& report) {
     fmt::print("report.json      its tables and page: identical to a regenerated report\n");
     return "";
   }
-  return fmt::format("places where its report differs from a regenerated one (is it older?): {}",
-                     report.differences.size());
+  return fault;
 }
 
 void verify(const VerifyOptions& options) {

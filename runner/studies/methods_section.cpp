@@ -283,8 +283,7 @@ CitingText questionnaires(const Protocol& protocol, const DoneBlocks& done) {
   std::vector<CitingText> forms;
   for (analysis::Questionnaire& form : questionnaires_of(protocol)) {
     std::erase_if(form.asked, [&](const std::string& place) {
-      return std::ranges::find(protocol.blocks, place, &Block::name) != protocol.blocks.end() &&
-             !done.contains(place);
+      return protocol.find_block(place) != nullptr && !done.contains(place);
     });
     if (form.asked.empty()) {
       continue;

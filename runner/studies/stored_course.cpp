@@ -16,15 +16,11 @@
 #include "runner/session/operators/operator.hpp"
 namespace tapstudy::runner {
 namespace {
+using core::quoted_name;
 using protocols::PlannedTrial;
 using protocols::Protocol;
 using results::Statement;
 using results::Store;
-
-std::string quoted(const std::string& text) {
-  constexpr std::size_t longest = 60;
-  return "'" + core::shortened(text, longest) + "'";
-}
 
 // Unset: this version draws another order.
 std::optional<protocols::Schedule> schedule_of(const results::SessionRow& session,
@@ -191,20 +187,21 @@ std::string objection(const Followed& before, SessionState state, std::optional<
 
 void check_states(Store& store, CheckedCourse& course) {
   std::map<std::int64_t, Followed> sessions;
-  store.each_row("SELECT session_id, state, number, t_s FROM session_event ORDER BY rowid",
-                 [&](Statement& row) {
-                   const std::int64_t session = row.integer(0);
-                   const std::optional<SessionState> state = state_named(row.text(1));
-                   Followed& before = sessions[session];
-                   const std::string wrong =
-                       state ? objection(before, *state, row.optional_int(2), row.real(3))
-                             : std::string{"is no state of a session"};
-                   if (!wrong.empty()) {
-                     course.wrong.push_back(fmt::format("session {}: {} at {} s {}", session,
-                                                        quoted(row.text(1)), row.real(3), wrong));
-                   }
-                   before = {state, row.optional_int(2), row.real(3)};
-                 });
+  store.each_row(
+      "SELECT session_id, state, number, t_s FROM session_event ORDER BY rowid",
+      [&](Statement& row) {
+        const std::int64_t session = row.integer(0);
+        const std::optional<SessionState> state = state_named(row.text(1));
+        Followed& before = sessions[session];
+        const std::string wrong = state
+                                      ? objection(before, *state, row.optional_int(2), row.real(3))
+                                      : std::string{"is no state of a session"};
+        if (!wrong.empty()) {
+          course.wrong.push_back(fmt::format("session {}: {} at {} s {}", session,
+                                             quoted_name(row.text(1)), row.real(3), wrong));
+        }
+        before = {state, row.optional_int(2), row.real(3)};
+      });
   for (const auto& [session, last] : sessions) {
     if (last.state && last.state != SessionState::ended && last.state != SessionState::stopped &&
         last.state != SessionState::faulted) {
@@ -222,7 +219,7 @@ void check_actions(Store& store, CheckedCourse& course) {
                    if (std::ranges::find(operator_actions(), action, &ActionInfo::name) ==
                        operator_actions().end()) {
                      course.wrong.push_back(fmt::format("action {}: {} is no action of an operator",
-                                                        row.integer(1), quoted(action)));
+                                                        row.integer(1), quoted_name(action)));
                    }
                  });
 }

@@ -12,6 +12,7 @@
 #include "results/store/program_versions.hpp"
 #include "results/store/study_queries.hpp"
 #include "runner/session/engine/between_trials.hpp"
+#include "runner/session/engine/stored_names.hpp"
 namespace tapstudy::runner {
 bool is_before(const std::string& version, int major, int minor) {
   const auto first_dot = version.find('.');
@@ -55,6 +56,12 @@ protocols::Protocol stored_protocol(results::Store& store) {
         return found->bytes;
       },
       defaults_of(store));
+}
+
+protocols::Protocol checked_protocol(results::Store& store) {
+  protocols::Protocol protocol = stored_protocol(store);
+  check_names(store, protocol);
+  return protocol;
 }
 
 protocols::Protocol protocol_to_go_on_with(const std::string& file, const std::string& language,

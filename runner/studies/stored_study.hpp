@@ -27,6 +27,8 @@ protocols::EarlierDefaults defaults_of(results::Store& store);
 // The protocol of a study, from its store alone: the files named by it may no longer exist. Throws
 // InvalidInput where it cannot be read.
 protocols::Protocol stored_protocol(results::Store& store);
+// The same where its rows are read by it: throws StoreError as check_names (stored_names.hpp).
+protocols::Protocol checked_protocol(results::Store& store);
 // The protocol of a file, as the study in this directory is to go on with it, if one has begun.
 protocols::Protocol protocol_to_go_on_with(const std::string& file, const std::string& language,
                                            const std::string& directory);
@@ -35,6 +37,10 @@ protocols::Protocol protocol_to_go_on_with(const std::string& file, const std::s
 protocols::PlannedTrial stored_trial(const results::TrialRow& row,
                                      const std::vector<results::AlternativeRow>& alternatives,
                                      const protocols::Block& block);
+
+inline constexpr const char* unfinished_beginning =
+    "is the unfinished beginning of a study, without a session (its program was ended before the "
+    "first one; another with the same --out goes on with it)";
 
 // The course of each block over participants of a mode, of all stores together.
 using DoneBlocks = std::map<std::string, results::BlockCourseRow>;

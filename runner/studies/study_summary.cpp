@@ -23,7 +23,6 @@
 #include "protocols/schedule/catch_trials.hpp"
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
-#include "protocols/surface/surface_noise.hpp"
 #include "results/store/study_queries.hpp"
 #include "runner/session/engine/practice.hpp"
 #include "runner/session/engine/stored_names.hpp"
@@ -277,8 +276,7 @@ class Wanted {
     const auto is_known = [&](const std::string& name) {
       return std::ranges::find(analysis::study_sections::all, name) !=
                  analysis::study_sections::all.end() ||
-             std::ranges::find(protocol.blocks, name, &protocols::Block::name) !=
-                 protocol.blocks.end();
+             protocol.find_block(name) != nullptr;
     };
     is_all_ = only.empty() || !std::ranges::all_of(only, is_known);
   }
@@ -322,7 +320,8 @@ using analysis::Summary;
 using results::Mode;
 
 std::vector<std::pair<std::string, std::string>> provenance(
-    const results::StudyRow& study, const std::vector<results::SessionRow>& sessions) {
+    const results::StudyRow& study, const protocols::Protocol& protocol,
+    const std::vector<results::SessionRow>& sessions) {
   std::set<std::string> programs;
   std::set<std::string> devices;
   std::vector<std::string> seeds;
@@ -339,11 +338,9 @@ std::vector<std::pair<std::string, std::string>> provenance(
       {"tapstudy", fmt::format("{}", fmt::join(programs, "; "))},
       {"device", fmt::format("{}", fmt::join(devices, "; "))},
       {"seeds", fmt::format("{}", fmt::join(seeds, ", "))}};
-  for (const results::SurfaceRow& surface : study.surfaces) {
-    const protocols::SurfaceNoise noise =
-        protocols::noise_of({surface.file, surface.bytes, surface.sha256});
-    if (!noise.describe().empty()) {
-      all.emplace_back("surface " + surface.file, noise.describe());
+  for (const protocols::SurfaceSource& surface : protocol.surfaces) {
+    if (const std::string noise = surface.noise.describe(); !noise.empty()) {
+      all.emplace_back("surface " + surface.file, noise);
     }
   }
   return all;
@@ -469,8 +466,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   if (std::ranges::all_of(stores,
                           [](const StudyStore& each) { return each.store->sessions().empty(); })) {
     throw core::InvalidInput{
-        fmt::format("{}: is the unfinished beginning of a study, without a session",
-                    fmt::join(directories, ", "))};
+        fmt::format("{}: {}", fmt::join(directories, ", "), unfinished_beginning)};
   }
   if (all.answers.empty()) {
     throw core::InvalidInput{fmt::format(
@@ -496,7 +492,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
       summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
     }
   }
-  summary.provenance = provenance(study, all.sessions);
+  summary.provenance = provenance(study, protocol, all.sessions);
   summary.procedure = describe_procedure(protocol, all.sessions, summary.participant_ids, done);
   summary.unfinished = std::move(all.unfinished);
   summary.excluded = std::move(all.excluded);

@@ -18,18 +18,10 @@ namespace tapstudy::runner {
 namespace {
 using Lines = std::vector<std::string>;
 
-constexpr const char* unfinished_beginning =
-    "is the unfinished beginning of a study, without a session (its program was ended before the "
-    "first one; another with the same --out goes on with it)";
-
 // Without a protocol it is a rule that knows no block.
 results::TaskRule rule_of(const std::optional<protocols::Protocol>& protocol) {
   const auto block_of = [&protocol](const results::TrialRow& trial) -> const protocols::Block* {
-    if (!protocol) {
-      return nullptr;
-    }
-    const auto found = std::ranges::find(protocol->blocks, trial.block, &protocols::Block::name);
-    return found == protocol->blocks.end() ? nullptr : &*found;
+    return protocol ? protocol->find_block(trial.block) : nullptr;
   };
   return {[block_of](const results::TrialRow& trial) { return block_of(trial) != nullptr; },
           [block_of](const results::TrialRow& trial,

@@ -13,33 +13,24 @@
 #include "runner/session/engine/between_trials.hpp"
 namespace tapstudy::runner {
 namespace {
+using core::quoted_name;
 using protocols::Block;
 using protocols::Protocol;
 using results::Statement;
 using results::Store;
-
-std::string quoted(const std::string& name) {
-  constexpr std::size_t longest = 60;
-  return "'" + core::shortened(name, longest) + "'";
-}
-
-const Block* block_of(const Protocol& protocol, const std::string& name) {
-  const auto found = std::ranges::find(protocol.blocks, name, &Block::name);
-  return found == protocol.blocks.end() ? nullptr : &*found;
-}
 
 void add_unknown_blocks(Store& store, const Protocol& protocol, std::vector<std::string>& found) {
   store.each_row(
       "SELECT block, task, min(trial_id) FROM trial GROUP BY block, task ORDER BY 3",
       [&](Statement& row) {
         const std::string name = row.text(0);
-        const Block* const block = block_of(protocol, name);
+        const Block* const block = protocol.find_block(name);
         if (block == nullptr) {
           found.push_back(fmt::format("trial {} is of block {}, which the protocol lacks",
-                                      row.integer(2), quoted(name)));
+                                      row.integer(2), quoted_name(name)));
         } else if (row.text(1) != block->task->name()) {
           found.push_back(fmt::format("trial {} has the task {}, its block '{}' has '{}'",
-                                      row.integer(2), quoted(row.text(1)), name,
+                                      row.integer(2), quoted_name(row.text(1)), name,
                                       block->task->name()));
         }
       });
@@ -57,7 +48,7 @@ void add_unplanned_blocks(Store& store, std::vector<std::string>& found) {
         found.push_back(
             fmt::format("session {} (participant {}): its order lacks block {}, of "
                         "which there are trials",
-                        session.id, quoted(session.participant_id), quoted(block)));
+                        session.id, quoted_name(session.participant_id), quoted_name(block)));
       }
     }
   }
@@ -71,14 +62,14 @@ void add_unknown_stimuli(Store& store, const Protocol& protocol, std::vector<std
         if (std::ranges::find(protocol.stimuli, name, &protocols::Stimulus::name) ==
             protocol.stimuli.end()) {
           found.push_back(fmt::format("trial {} presents {}, a stimulus that the protocol lacks",
-                                      row.integer(1), quoted(name)));
+                                      row.integer(1), quoted_name(name)));
         }
       });
   store.each_row("SELECT axis, min(trial_id) FROM axis_value GROUP BY axis ORDER BY 2",
                  [&](Statement& row) {
                    if (protocols::find_axis(row.text(0)) == nullptr) {
                      found.push_back(fmt::format("trial {} has a value of {}, which is no axis",
-                                                 row.integer(1), quoted(row.text(0))));
+                                                 row.integer(1), quoted_name(row.text(0))));
                    }
                  });
 }
@@ -100,14 +91,14 @@ void add_unknown_items(Store& store, const Protocol& protocol, std::vector<std::
           found.push_back(
               fmt::format("session {} has an answer to {} of questionnaire {}, which the protocol "
                           "lacks",
-                          row.integer(3), quoted(row.text(1)), quoted(row.text(0))));
+                          row.integer(3), quoted_name(row.text(1)), quoted_name(row.text(0))));
         }
         if (asked != asked_at_begin && asked != asked_at_end &&
-            block_of(protocol, asked) == nullptr) {
+            protocol.find_block(asked) == nullptr) {
           found.push_back(
               fmt::format("session {} has an answer that was asked at {}, which is '{}', '{}' or a "
                           "block of the protocol",
-                          row.integer(3), quoted(asked), asked_at_begin, asked_at_end));
+                          row.integer(3), quoted_name(asked), asked_at_begin, asked_at_end));
         }
       });
 }

@@ -15,7 +15,6 @@
 #include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/join_points.hpp"
 #include "protocols/surface/surface_file.hpp"
-#include "protocols/surface/surface_noise.hpp"
 #include "protocols/yaml/text_file.hpp"
 #include "support/catch.hpp"
 #include "support/surfaces.hpp"
@@ -44,7 +43,8 @@ core::TriangleSurface shifted(core::TriangleSurface surface, const Eigen::RowVec
 }
 core::TriangleSurface read(const std::string& file, double metres_per_unit) {
   return protocols::read_surface(protocols::surface_source(file, protocols::contents_of(file)),
-                                 metres_per_unit);
+                                 metres_per_unit)
+      .surface;
 }
 // As OFF and PLY have them.
 void write_points_and_faces(std::ostream& text, const core::TriangleSurface& surface) {
@@ -138,7 +138,7 @@ TEST_CASE("a surface is read alike from every kind of file", "[core][surface]") 
 namespace {
 core::TriangleSurface read_text(const std::string& name, const std::string& text,
                                 double metres_per_unit = 1.0) {
-  return protocols::read_surface(protocols::surface_source(name, text), metres_per_unit);
+  return protocols::read_surface(protocols::surface_source(name, text), metres_per_unit).surface;
 }
 std::string replaced_all(const std::string& text, const std::string& from, const std::string& to) {
   std::string result;
@@ -354,12 +354,7 @@ TEST_CASE("equal surfaces are equal bodies, to the last digit", "[protocols][sur
     triangle = Eigen::RowVector3i{triangle[1], triangle[2], triangle[0]};
   }
   const auto modes = [](const std::string& name, const std::string& text, double metres_per_unit) {
-    core::BodySpec body{{core::Solid{protocols::read_surface(protocols::surface_source(name, text),
-                                                             metres_per_unit)},
-                         {},
-                         {}},
-                        0.3,
-                        3.0};
+    core::BodySpec body{{core::Solid{read_text(name, text, metres_per_unit)}, {}, {}}, 0.3, 3.0};
     body.mesh.size.max_tet_volume_m3 = 1e-5;
     core::Fixation left;
     left.shape = core::RegionShape::side;
@@ -411,7 +406,7 @@ core::TriangleSurface reread(const core::TriangleSurface& surface) {
   return read_text("body.off", as_off(surface));
 }
 protocols::SurfaceNoise noise_in(const core::TriangleSurface& surface) {
-  return protocols::noise_of(protocols::surface_source("body.off", as_off(surface)));
+  return protocols::read_surface(protocols::surface_source("body.off", as_off(surface)), 1.0).noise;
 }
 }  // namespace
 
@@ -593,8 +588,7 @@ TEST_CASE("a concave face is cut inside itself", "[protocols][surface]") {
     const int next = (i + 1) % 8;
     off << "4 " << i << ' ' << next << ' ' << 8 + next << ' ' << 8 + i << '\n';
   }
-  const core::TriangleSurface surface =
-      protocols::read_surface(protocols::surface_source("u.off", off.str()), 0.1);
+  const core::TriangleSurface surface = read_text("u.off", off.str(), 0.1);
   CHECK_NOTHROW(check_surface(surface));
   CHECK(core::volume_m3(surface) == Approx(7.0 * 1e-3));
   double area_m2 = 0.0;
@@ -627,8 +621,7 @@ TEST_CASE("a triangle whose corner lies on its opposite side is refused with wha
       "0 0.1 0.1\n0.03 1e-9 0\n"
       "3 0 2 8\n3 8 2 1\n3 0 8 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 2 3 7\n"
       "3 2 7 6\n3 1 2 6\n3 1 6 5\n3 0 4 7\n3 0 7 3\n";
-  CHECK_THROWS_WITH(protocols::check_surface(
-                        protocols::read_surface(protocols::surface_source("cap.off", text), 1.0)),
+  CHECK_THROWS_WITH(protocols::check_surface(read_text("cap.off", text)),
                     Contains("is flat: a corner lies on the opposite side"));
 }
 

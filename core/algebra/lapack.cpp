@@ -25,13 +25,14 @@ void check(lapack_int info, const char* problem, const char* routine) {
 }
 }  // namespace
 
+// Divide and conquer: with all vectors several times quicker than the QR iteration of dsyev.
 EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A) {
   EigenPairs pairs{Eigen::VectorXd{A.rows()}, std::move(A)};
   const lapack_int n = as_lapack_int(pairs.values.size());
   if (n > 0) {
     check(
-        LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, pairs.vectors.data(), n, pairs.values.data()),
-        eigenproblem, "dsyev");
+        LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, pairs.vectors.data(), n, pairs.values.data()),
+        eigenproblem, "dsyevd");
   }
   return pairs;
 }

@@ -34,6 +34,7 @@ struct ReportOptions {
   std::string responses;
   std::string order;
   std::string time_unit;
+  std::string rows;
   std::string out;
   std::string mode;
   std::string only;
@@ -136,7 +137,8 @@ void check_output_is_new(const ReportOptions& options) {
 bool reads_columns(const ReportOptions& options) {
   return options.table.columns.are_given() || !options.table.conditions.empty() ||
          !options.responses.empty() || !options.order.empty() || !options.table.encoding.empty() ||
-         options.table.merges_alike || options.table.pools_runs;
+         options.table.merges_alike || options.table.pools_runs || options.table.counts_practice ||
+         !options.rows.empty();
 }
 
 TableOptions table_options(const ReportOptions& options) {
@@ -145,6 +147,10 @@ TableOptions table_options(const ReportOptions& options) {
   table.order = split_row(options.order, "--order");
   if (!options.time_unit.empty()) {
     table.columns.time_unit_s = options.time_unit == "ms" ? 1e-3 : 1.0;
+  }
+  if (!options.rows.empty()) {
+    table.rows =
+        options.rows == "stimuli" ? analysis::MatrixRows::stimuli : analysis::MatrixRows::responses;
   }
   return table;
 }
@@ -189,8 +195,9 @@ void check_options(const ReportOptions& options) {
   }
   if (!options.directories.empty() && reads_columns(options)) {
     throw core::InvalidInput{
-        "options with columns, --where, --responses, --order, --weights, --encoding, --merge-alike "
-        "and --pool-runs say how to read --counts FILE.csv"};
+        "options with columns, --where, --responses, --order, --weights, --encoding, "
+        "--merge-alike, "
+        "--pool-runs, --count-practice and --rows say how to read --counts FILE.csv"};
   }
   if (options.directories.size() > 1 && options.out.empty()) {
     throw core::InvalidInput{"--out: a report of several directories needs one of its own"};
@@ -233,7 +240,8 @@ void add_report(CommandParser& line) {
   command.one_of("--time-unit", options->time_unit, {"s", "ms"},
                  "Of the response time; default: from the column's name or the file's format");
   command.repeatable("--where", options->table.conditions,
-                     "With --counts: COLUMN=VALUE; rows with other values are left out");
+                     "With --counts: COLUMN=VALUE; rows with other values are left out; "
+                     "COLUMN!=VALUE: rows with that value");
   command.option("--responses", options->responses,
                  "With --counts: answers that are no stimuli, and GIVEN=STIMULUS for what answers "
                  "stand for, comma-separated");
@@ -254,6 +262,11 @@ void add_report(CommandParser& line) {
                "With --counts: names that read alike are one, the first of them");
   command.flag("--pool-runs", options->table.pools_runs,
                "With --counts: several runs of one participant count together");
+  command.flag("--count-practice", options->table.counts_practice,
+               "With --counts: rows that a column calls practice count like others");
+  command.one_of(
+      "--rows", options->rows, {"stimuli", "responses"},
+      "With --counts: what the rows of a matrix stand for, if its header does not say it");
   command.option("--out", options->out,
                  "Output directory; default: report in the study's own directory");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},

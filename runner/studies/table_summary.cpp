@@ -67,14 +67,19 @@ analysis::AnswerReading reading_of(const TableOptions& options) {
   for (const std::string& condition : options.conditions) {
     if (condition.find('=') == std::string::npos) {
       throw core::InvalidInput{
-          fmt::format("--where: '{}' is not of the form COLUMN=VALUE", condition)};
+          fmt::format("--where: '{}' is not of the form COLUMN=VALUE or COLUMN!=VALUE", condition)};
     }
-    const auto [column, value] = split(condition);
-    reading.conditions.push_back({column, value});
+    auto [column, value] = split(condition);
+    const bool is_excluded = column.ends_with('!');
+    if (is_excluded) {
+      column.pop_back();
+    }
+    reading.conditions.push_back({column, value, is_excluded});
   }
   reading.order = options.order;
   reading.merges_alike = options.merges_alike;
   reading.pools_runs = options.pools_runs;
+  reading.counts_practice = options.counts_practice;
   for (const std::string& response : options.responses) {
     reading.responses.insert(split(response));
   }
@@ -91,6 +96,9 @@ std::set<std::string> modes_of(const std::vector<NamedCsv>& tables,
 }
 
 bool hold_answers(const std::vector<NamedCsv>& tables, const TableOptions& options) {
+  if (options.rows) {
+    return false;
+  }
   return tables.size() > 1 || options.columns.are_given() || !options.conditions.empty() ||
          (!tables.front().text.rows.empty() &&
           analysis::has_answers(tables.front().text.rows.front().cells));
@@ -165,6 +173,17 @@ Summary summary_of_answers(const std::vector<NamedCsv>& tables, const TableOptio
 }
 }  // namespace
 
+namespace {
+Summary summary_of_matrix(NamedCsv table, const TableOptions& options, const std::string& title) {
+  const std::set<std::string> modes = modes_of({table});
+  if (options.rows) {
+    table.text = analysis::as_matrix(std::move(table.text), *options.rows);
+  }
+  return analysis::summarise(analysis::read_counts(table.text, table.file), title,
+                             protocols::identification().name(), modes);
+}
+}  // namespace
+
 Summary summary_of_tables(const std::vector<std::string>& files, const TableOptions& options) {
   std::vector<NamedCsv> tables;
   for (const std::string& file : files) {
@@ -172,11 +191,9 @@ Summary summary_of_tables(const std::vector<std::string>& files, const TableOpti
   }
   check_differ(tables);
   const std::string title = std::filesystem::path{files.front()}.stem().string();
-  Summary summary =
-      hold_answers(tables, options)
-          ? summary_of_answers(tables, options, title)
-          : analysis::summarise(analysis::read_counts(tables.front().text, files.front()), title,
-                                protocols::identification().name(), modes_of(tables));
+  Summary summary = hold_answers(tables, options)
+                        ? summary_of_answers(tables, options, title)
+                        : summary_of_matrix(tables.front(), options, title);
   summary.provenance = {{"counts", fmt::format("{}", fmt::join(files, ", "))}};
   return summary;
 }

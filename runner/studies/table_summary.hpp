@@ -1,8 +1,10 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/report/answer_tables/answer_columns.hpp"
+#include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/summary.hpp"
 namespace tapstudy::runner {
 // Reading options for a table from elsewhere.
@@ -14,6 +16,8 @@ struct TableOptions {
   std::string encoding{};                 // as iconv calls it; empty: UTF-8
   bool merges_alike{false};
   bool pools_runs{false};
+  bool counts_practice{false};
+  std::optional<analysis::MatrixRows> rows{};  // of a matrix whose corner does not say it
 };
 
 // The summary of a confusion matrix, or of answers one a row, whose participants are named by a

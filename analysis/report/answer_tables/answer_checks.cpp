@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
+#include <string_view>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -80,6 +82,35 @@ std::string described(const Runs& runs) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 }  // namespace
+
+std::optional<bool> right_or_wrong(const std::string& cell) {
+  constexpr std::array right{"1", "1.0", "true", "yes", "right", "correct"};
+  constexpr std::array wrong{"0", "0.0", "false", "no", "wrong", "incorrect"};
+  const auto is_one_of = [&](const auto& words) {
+    return std::ranges::any_of(words, [&](const char* word) { return is_same_word(cell, word); });
+  };
+  return is_one_of(right)   ? std::optional{true}
+         : is_one_of(wrong) ? std::optional{false}
+                            : std::nullopt;
+}
+
+bool says_practice(const std::string& column, const std::string& cell) {
+  constexpr std::array<std::string_view, 9> words{"practice",        "practise",        "training",
+                                                  "warmup",          "warm-up",         "warm up",
+                                                  "familiarisation", "familiarization", "tutorial"};
+  const auto begins_with_one_of_them = [&](std::string_view text) {
+    return std::ranges::any_of(words, [&](std::string_view word) {
+      return is_same_word(text.substr(0, word.size()), word);
+    });
+  };
+  const bool is_called_so = begins_with_one_of_them(column) ||
+                            (column.size() > 3 && is_same_word(column.substr(0, 3), "is_") &&
+                             begins_with_one_of_them(column.substr(3)));
+  if (is_called_so && column.ends_with(".thisN")) {
+    return !cell.empty();
+  }
+  return begins_with_one_of_them(cell) || (is_called_so && right_or_wrong(cell) == true);
+}
 
 std::string to_text(const AnswerOrigin& origin) {
   return origin.csv->text.place(origin.csv->file, origin.line);

@@ -18,6 +18,14 @@ struct AnswerOrigin {
 std::string to_text(const AnswerOrigin& origin);
 using AnswerOrigins = std::vector<AnswerOrigin>;
 
+// Whether a row is practice by what stands in one of its columns: the word itself ("practice",
+// "training", "warm-up", …), yes in a column that is called after it, or the count of PsychoPy's
+// loop of that name.
+bool says_practice(const std::string& column, const std::string& cell);
+
+// "1", "true", "correct" …, or the contrary; unset: says neither.
+std::optional<bool> right_or_wrong(const std::string& cell);
+
 // Names that read alike become the first of them, in answers and in `responses`; says which.
 std::vector<std::string> merge_alike(std::vector<results::AnswerRow>& answers,
                                      std::map<std::string, std::string>& responses);

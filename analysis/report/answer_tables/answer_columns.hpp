@@ -23,10 +23,11 @@ struct AnswerColumns {
 inline constexpr const char* no_column = "none";
 inline constexpr const char* run_of_file = "run of the file";
 
-// A column and the value that it must have.
+// A column and the value that it must have, or must not.
 struct RowCondition {
   std::string column;
   std::string value;
+  bool is_excluded{false};  // rows with that value are left out, not those without
 };
 
 // Their places in a row, from 0.

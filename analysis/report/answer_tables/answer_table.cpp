@@ -76,18 +76,6 @@ bool is_missing(const std::string& cell) {
 
 using Origin = AnswerOrigin;
 
-// Unset: says neither.
-std::optional<bool> right_or_wrong(const std::string& cell) {
-  constexpr std::array right{"1", "1.0", "true", "yes", "right", "correct"};
-  constexpr std::array wrong{"0", "0.0", "false", "no", "wrong", "incorrect"};
-  const auto is_one_of = [&](const auto& words) {
-    return std::ranges::any_of(words, [&](const char* word) { return is_same_word(cell, word); });
-  };
-  return is_one_of(right)   ? std::optional{true}
-         : is_one_of(wrong) ? std::optional{false}
-                            : std::nullopt;
-}
-
 // Reads one file.
 class AnswerReader {
  public:
@@ -102,7 +90,8 @@ class AnswerReader {
         refuse(csv.text.rows.front().line,
                fmt::format("has no column '{}', which --where names", condition.column));
       }
-      conditions_.emplace_back(static_cast<std::size_t>(found - header().begin()), condition.value);
+      conditions_.push_back({static_cast<std::size_t>(found - header().begin()), condition.value,
+                             condition.is_excluded});
     }
     // others hold something else: a share of right answers, the right answer itself
     if (places_.correct &&
@@ -127,6 +116,9 @@ class AnswerReader {
         add(row, table, origins);
       }
     }
+    if (!reading_.counts_practice && !places_.is_own_export) {
+      check_holds_no_practice();
+    }
     table.possible_time = places_.possible_time;
     table.has_times |= places_.time.has_value();
   }
@@ -138,15 +130,52 @@ class AnswerReader {
   }
 
  private:
-  using Conditions = std::vector<std::pair<std::size_t, std::string>>;  // place and value
+  struct Condition {
+    std::size_t place{};
+    std::string value;
+    bool is_excluded{false};
+  };
+  using Conditions = std::vector<Condition>;
   static bool meets(const Conditions& conditions, const CsvRow& row) {
-    return std::ranges::all_of(conditions, [&](const auto& condition) {
-      return row.cells[condition.first] == condition.second;
+    return std::ranges::all_of(conditions, [&](const Condition& condition) {
+      return (row.cells[condition.place] == condition.value) != condition.is_excluded;
     });
+  }
+  // Where a column says that some of the rows are practice, it is for the user to say whether they
+  // count.
+  void check_holds_no_practice() const {
+    for (std::size_t column = 0; column < header().size(); ++column) {
+      if (column == places_.stimulus || column == places_.response ||
+          column == places_.participant) {
+        continue;
+      }
+      const CsvRow* first = nullptr;
+      std::size_t practice = 0;
+      std::size_t all = 0;
+      for (const CsvRow& row : std::span{csv_.text.rows}.subspan(1)) {
+        if (!meets(conditions_, row)) {
+          continue;
+        }
+        ++all;
+        if (says_practice(header()[column], row.cells[column])) {
+          first = first == nullptr ? &row : first;
+          ++practice;
+        }
+      }
+      if (first != nullptr && practice < all) {
+        refuse(first->line,
+               fmt::format("column '{0}' says '{1}': {2} of {3} rows are practice. Leave them out "
+                           "(--where '{0}!={1}', or '{0}=' and the value to be counted), or "
+                           "--count-practice",
+                           header()[column], first->cells[column], practice, all));
+      }
+    }
   }
   void add(const CsvRow& row, AnswerTable& table, std::vector<Origin>& origins) const {
     ++table.rows;
-    if (!meets(places_.counted, row)) {
+    if (!std::ranges::all_of(places_.counted, [&](const auto& counted) {
+          return row.cells[counted.first] == counted.second;
+        })) {
       ++table.not_counted;
     } else if (is_unanswered(row.cells[places_.response])) {
       ++table.unanswered[row.cells[places_.response]];

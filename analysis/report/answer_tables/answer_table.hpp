@@ -27,6 +27,7 @@ struct AnswerReading {
   std::map<std::string, std::string> responses{};
   bool merges_alike{false};          // names that read alike are one, the first of them
   bool pools_runs{false};            // of one participant
+  bool counts_practice{false};       // rows that a column calls practice are answers like others
   std::vector<std::string> order{};  // of stimuli and responses; empty: as they first appear
 };
 
@@ -55,9 +56,10 @@ struct NamedCsv {
   CsvText text;
 };
 // Participants' answers follow one another as rows and files do. Throws InvalidInput with file:line
-// for an answer that is neither a stimulus nor one of `responses`, a time that is no number from 0,
-// an answer without a stimulus, several blocks of one of tapstudy's own exports, a row with more or
-// fewer cells than the header, more than 200 different answers, or no answers at all.
+// where a column says that some rows are practice (says_practice()), for an answer that is neither
+// a stimulus nor one of `responses`, a time that is no number from 0, an answer without a stimulus,
+// several blocks of one of tapstudy's own exports, a row with more or fewer cells than the header,
+// more than 200 different answers, or no answers at all.
 AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading);
 
 // Without the two rows below the header in which Qualtrics repeats the questions and says where

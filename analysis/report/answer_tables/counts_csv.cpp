@@ -24,6 +24,15 @@ bool has_name(const std::vector<Item>& items, const std::string& name) {
   return std::ranges::find(items, name, &Item::name) != items.end();
 }
 
+// As a confusion matrix's are whose corner does not say which of both were presented.
+bool are_called_alike(const std::vector<CsvRow>& rows) {
+  return rows.size() > 2 && rows.front().cells.front() != "stimulus" &&
+         std::ranges::all_of(std::span{rows}.subspan(1), [&](const CsvRow& row) {
+           return std::ranges::find(rows.front().cells, row.cells.front()) !=
+                  rows.front().cells.end();
+         });
+}
+
 const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const std::string& file) {
   for (const CsvRow& row : rows) {
     if (row.cells.size() != rows.front().cells.size()) {
@@ -31,6 +40,11 @@ const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const s
              fmt::format("has {} cells, the header has {}", row.cells.size(),
                          rows.front().cells.size()));
     }
+  }
+  if (are_called_alike(rows)) {
+    refuse(file, rows.front().line,
+           "has rows and columns of the same names, and does not say which were presented: --rows "
+           "stimuli or --rows responses (a header that starts with 'stimulus' says so itself)");
   }
   if (rows.size() < 2 || rows.front().cells.front() != "stimulus") {
     refuse(file, rows.empty() ? 1 : rows.front().line,
@@ -185,6 +199,35 @@ ConfusionMatrix read_counts(const CsvText& csv, const std::string& file) {
     refuse(file, lines.front().line, "holds no answers");
   }
   return matrix;
+}
+
+CsvText as_matrix(CsvText csv, MatrixRows rows) {
+  std::vector<CsvRow>& lines = csv.rows;
+  if (lines.empty()) {
+    return csv;
+  }
+  std::vector<std::string>& header = lines.front().cells;
+  const bool lacks_corner =
+      lines.size() > 1 && std::ranges::all_of(std::span{lines}.subspan(1), [&](const CsvRow& row) {
+        return row.cells.size() == header.size() + 1;
+      });
+  if (lacks_corner) {
+    header.insert(header.begin(), "");
+  }
+  header.front() = "stimulus";
+  const bool is_rectangular = std::ranges::all_of(
+      lines, [&](const CsvRow& row) { return row.cells.size() == header.size(); });
+  if (rows == MatrixRows::stimuli || !is_rectangular) {  // which is refused at its line
+    return csv;
+  }
+  CsvText turned = csv;
+  turned.rows.assign(header.size(), {lines.front().line, {}});
+  for (const CsvRow& row : lines) {
+    for (std::size_t column = 0; column < header.size(); ++column) {
+      turned.rows[column].cells.push_back(row.cells[column]);
+    }
+  }
+  return turned;
 }
 
 std::set<std::string> modes_in(const CsvText& csv) {

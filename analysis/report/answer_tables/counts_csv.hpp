@@ -10,6 +10,10 @@ namespace tapstudy::analysis {
 //   stimulus[,factor:NAME…],RESPONSE,RESPONSE,…
 // Factors are marked, with their levels below. Throws InvalidInput with file:line.
 ConfusionMatrix read_counts(const CsvText& csv, const std::string& file);
+// Which of the two a table's rows stand for, where its corner does not say "stimulus".
+enum class MatrixRows { stimuli, responses };
+// The same table with that corner and stimuli as rows. R's write.table leaves the corner out.
+CsvText as_matrix(CsvText csv, MatrixRows rows);
 // Of the participants whose answers a table holds, where a comment says it: "# mode: pilot, real".
 std::set<std::string> modes_in(const CsvText& csv);
 inline constexpr std::size_t max_classes = 200;  // stimuli or responses

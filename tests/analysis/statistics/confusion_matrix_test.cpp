@@ -55,6 +55,28 @@ TEST_CASE("a matrix that is written is read back the same", "[analysis][confusio
   CHECK(factors_of(matrix_from(text.str())) == std::vector<std::string>{"material", "structure"});
 }
 
+TEST_CASE("a matrix of R's and pandas' is read by rows or by columns, as is said, and not guessed",
+          "[analysis][confusion]") {
+  const std::string with_corner =
+      GENERATE("\"\",\"oak\",\"steel\"\n\"oak\",7,3\n\"steel\",1,9\n",  // R: write.csv(table(…))
+               "presented,oak,steel\noak,7,3\nsteel,1,9\n",             // pandas: crosstab
+               "oak,steel\noak,7,3\nsteel,1,9\n");                      // R: write.table
+  std::istringstream stream{with_corner};
+  const CsvText csv = read_csv(stream, "counts.csv");
+  const ConfusionMatrix by_rows = read_counts(as_matrix(csv, MatrixRows::stimuli), "counts.csv");
+  const ConfusionMatrix by_columns =
+      read_counts(as_matrix(csv, MatrixRows::responses), "counts.csv");
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t j = 0; j < 2; ++j) {
+      CHECK(by_rows.counts[i][j] == by_columns.counts[j][i]);
+    }
+  }
+  CHECK(by_rows.counts[0][1] == 3);
+  if (!with_corner.starts_with("oak")) {
+    CHECK_THAT(refusal(with_corner), Contains("--rows stimuli or --rows responses"));
+  }
+}
+
 TEST_CASE("a printed matrix has the exact interval and binomial test of R's binom.test",
           "[analysis][confusion]") {
   const auto r = testing::r_numbers(

@@ -226,7 +226,7 @@ TEST_CASE("a block on a soft disc rocks as on the disc itself, on any mesh", "[c
 }
 
 TEST_CASE("springs lower every frequency below that of the constraint that they become in the end",
-          "[core][model]") {
+          "[core][model][slow]") {
   core::PlateSpec spec = block(2, 2e-5);
   spec.band_limit_hz = 25000.0;
   spec.fixations = {bottom()};

@@ -139,7 +139,8 @@ TEST_CASE("a stiff block on four soft feet moves up and down at sqrt(k / m)", "[
   CHECK(has(tilt_hz) == 2);
 }
 
-TEST_CASE("a block slides on the ground, however many nodes hold the ground", "[core][model]") {
+TEST_CASE("a block slides on the ground, however many nodes hold the ground",
+          "[core][model][slow]") {
   core::PlateSpec spec = stiff_block(60.0);
   core::JoinedBody ground{block({0.8, 0.8, 0.025}, 3e-6), material_of(1e13, 2000.0, 0.01)};
   ground.fixations = {side(core::Side::bottom)};
@@ -153,7 +154,7 @@ TEST_CASE("a block slides on the ground, however many nodes hold the ground", "[
 }
 
 TEST_CASE("a free assembly has six rigid motions, however its regions are meshed",
-          "[core][model]") {
+          "[core][model][slow]") {
   // of a ball each mesh has other nodes, whose mean is elsewhere
   const auto ball = [](double x, double y, double z) {
     core::Fixation fixation;
@@ -245,7 +246,7 @@ TEST_CASE("a contact that is stiff beyond all else is a joint: a bar of two halv
   CHECK((joined_hz / whole_hz - 1.0).abs().maxCoeff() < 0.03);
 }
 
-TEST_CASE("the energy of a mode is in the bodies and springs", "[core][model]") {
+TEST_CASE("the energy of a mode is in the bodies and springs", "[core][model][slow]") {
   const core::PlateSpec spec = BoardOnBoard{core::RegionShape::disc}.board;
   const core::BodyModes modes = core::solve_body(core::body_of(spec)).modes;
   CHECK((modes.kinetic_share.colwise().sum().array() - 1.0).abs().maxCoeff() < 1e-9);
@@ -257,7 +258,8 @@ TEST_CASE("the energy of a mode is in the bodies and springs", "[core][model]") 
   CHECK((modal.damping_ratio - expected.head(modal.damping_ratio.size())).abs().maxCoeff() < 1e-12);
 }
 
-TEST_CASE("bodies of one Rayleigh damping, joined by a stiff contact, keep it", "[core][model]") {
+TEST_CASE("bodies of one Rayleigh damping, joined by a stiff contact, keep it",
+          "[core][model][slow]") {
   core::PlateSpec spec = BoardOnBoard{core::RegionShape::disc}.board;
   const core::RayleighDamping rayleigh{30.0, 4e-5};
   core::Joints joints = *spec.joints;
@@ -275,7 +277,7 @@ TEST_CASE("bodies of one Rayleigh damping, joined by a stiff contact, keep it", 
 }
 
 TEST_CASE("a ratio that is stated for a frequency is that of the material in contact, too",
-          "[core][model]") {
+          "[core][model][slow]") {
   core::PlateSpec spec = BoardOnBoard{core::RegionShape::disc}.board;
   core::Joints joints = *spec.joints;
   spec.material.damping = core::ConstantDamping{};

@@ -520,7 +520,7 @@ TEST_CASE("springs and modulus planted in frequencies come back", "[analysis][id
 }
 
 TEST_CASE("the intervals of springs and modulus cover what was planted 95 times in 100",
-          "[analysis][identify]") {
+          "[analysis][identify][slow]") {
   core::Rng rng{2};
   constexpr int studies = 1000;
   int springs = 0;

@@ -409,3 +409,35 @@ TEST_CASE("text in another encoding is read where it is said, and the error says
   CHECK_THROWS_WITH(utf8_of("\xff", "UTF-8", "x.csv"), Contains("is not text in UTF-8"));
   CHECK(utf8_of("sep=;\r\na;b\r\n", "", "x.csv") == "\r\na;b\r\n");
 }
+
+TEST_CASE("practice among the answers is asked about, in whatever column other programs note it",
+          "[analysis][answer_tables]") {
+  const auto [column, practice, test] =
+      GENERATE(table<std::string, std::string, std::string>({{"phase", "practice", "test"},
+                                                             {"block", "Training", "main"},
+                                                             {"trial_part", "warm-up 1", ""},
+                                                             {"is_practice", "true", "false"},
+                                                             {"practice", "1", "0"},
+                                                             {"practice_loop.thisN", "0", ""}}));
+  CAPTURE(column);
+  const auto row = [](const std::string& answer, const std::string& part) {
+    return "P1,a," + answer + "," + part + "\nP1,b,b," + part + "\n";
+  };
+  const std::string text = "participant,stimulus,response," + column + "\n" + row("b", practice) +
+                           row("a", test) + row("a", test);
+  CHECK_THAT(refusal(text), Contains("answers.csv:2: column '" + column + "' says '" + practice +
+                                     "': 2 of 6 rows are practice"));
+  AnswerReading reading;
+  reading.conditions = {{column, practice, true}};
+  CHECK(answers_in(text, reading).answers.size() == 4);
+  reading.conditions = {{column, practice}};  // nothing else is counted with it
+  CHECK(answers_in(text, reading).answers.size() == 2);
+  reading = {};
+  reading.counts_practice = true;
+  CHECK(answers_in(text, reading).answers.size() == 6);
+}
+
+TEST_CASE("a stimulus or a person may be called after practice", "[analysis][answer_tables]") {
+  CHECK(answers_in("participant,stimulus,response\ntraining,practice,practice\nP2,b,b\n")
+            .answers.size() == 2);
+}

@@ -91,7 +91,7 @@ std::vector<results::AnswerRow> guesses(Guesser guesser, int people, int repetit
 }  // namespace
 
 TEST_CASE("where places are balanced guessers are found to discriminate in 3 to 6 % of studies",
-          "[analysis][discrimination]") {
+          "[analysis][discrimination][slow]") {
   constexpr int studies = 600;
   constexpr double error = 0.009;  // of a share of .05 of them
   const BlockDesign design = design_of("forced_choice", 2);

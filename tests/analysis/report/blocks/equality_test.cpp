@@ -53,7 +53,7 @@ std::vector<results::AnswerRow> observer(const std::string& name, double equalit
 }  // namespace
 
 TEST_CASE("the point of equality and the just noticeable difference of an observer are found",
-          "[analysis][equality]") {
+          "[analysis][equality][slow]") {
   int held_equality = 0;
   int held_jnd = 0;
   constexpr int observers = 100;

@@ -88,7 +88,7 @@ PosteriorEstimates posterior_of(const std::vector<Level>& levels,
 }  // namespace
 
 TEST_CASE("a report's interval holds the threshold of a simulated observer",
-          "[analysis][thresholds]") {
+          "[analysis][thresholds][slow]") {
   std::vector<results::AnswerRow> answers;
   for (std::uint64_t i = 0; i < 20; ++i) {
     answers = joined(answers, observer("p" + std::to_string(i), 0.1, 40, i));

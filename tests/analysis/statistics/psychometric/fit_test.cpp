@@ -279,7 +279,8 @@ TEST_CASE("no point of a grid over the box is likelier than the fit", "[analysis
   }
 }
 
-TEST_CASE("nor where a staircase left most trials at few levels", "[analysis][psychometric]") {
+TEST_CASE("nor where a staircase left most trials at few levels",
+          "[analysis][psychometric][slow]") {
   core::Rng rng{11};
   const PsychometricModel model{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
   for (int observer = 0; observer < 120; ++observer) {

@@ -355,7 +355,7 @@ TEST_CASE("on springs each Young's modulus has a solution of its own, and each d
   }
 }
 
-TEST_CASE("what damps is of a stimulus's own: materials and contacts", "[runner][stimuli]") {
+TEST_CASE("what damps is of a stimulus's own: materials and contacts", "[runner][stimuli][slow]") {
   const protocols::Protocol protocol =
       protocols::read_protocol(testing::shipped("examples/plate_on_feet.yaml").string());
   protocols::Stimulus stiff = protocol.stimulus("table");

@@ -22,28 +22,50 @@ using MatlabFile = std::unique_ptr<mat_t, CloseMatlab>;
 using MatlabVariable = std::unique_ptr<matvar_t, CloseMatlab>;
 
 struct MatlabArray {
-  std::string name;
+  std::string name;  // "acc", or "hammer.acc" within a structure
   std::size_t rows{};
   std::size_t columns{};
   std::size_t size() const { return rows * columns; }
   bool is_vector() const { return rows == 1 || columns == 1; }
+  std::string own_name() const { return name.substr(name.rfind('.') + 1); }
+  std::string structure() const { return name.substr(0, name.size() - own_name().size()); }
   std::size_t channels() const { return std::min(rows, columns); }
 };
 
 bool is_numeric(const matvar_t& variable) {
   return variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64 &&
-         variable.isComplex == 0 && variable.isLogical == 0 && variable.rank == 2 &&
-         variable.name != nullptr;
+         variable.isComplex == 0 && variable.isLogical == 0 && variable.rank == 2;
 }
 
-// The real matrices of numbers in the file.
+bool is_structure(const matvar_t& variable) {
+  return variable.class_type == MAT_C_STRUCT && variable.rank == 2 && variable.dims[0] == 1 &&
+         variable.dims[1] == 1;  // one, not a list of them
+}
+
+void add_arrays(matvar_t& variable, const std::string& name, std::vector<MatlabArray>& arrays) {
+  constexpr std::ptrdiff_t most_levels = 8;
+  if (is_structure(variable) && std::ranges::count(name, '.') < most_levels) {
+    char* const* const fields = Mat_VarGetStructFieldnames(&variable);
+    for (unsigned i = 0; i < Mat_VarGetNumberOfFields(&variable); ++i) {
+      if (matvar_t* const field = Mat_VarGetStructFieldByIndex(&variable, i, 0)) {
+        add_arrays(*field, fmt::format("{}.{}", name, fields[i]), arrays);
+      }
+    }
+    return;
+  }
+  const std::size_t rows = is_numeric(variable) ? variable.dims[0] : 0;
+  const std::size_t columns = is_numeric(variable) ? variable.dims[1] : 0;
+  if (rows > 0 && columns > 0 && columns <= max_matlab_values / rows) {
+    arrays.push_back({name, rows, columns});
+  }
+}
+
+// The real matrices of numbers in the file and in its structures.
 std::vector<MatlabArray> matlab_arrays(mat_t* file) {
   std::vector<MatlabArray> arrays;
   for (MatlabVariable one{Mat_VarReadNextInfo(file)}; one; one.reset(Mat_VarReadNextInfo(file))) {
-    const std::size_t rows = is_numeric(*one) ? one->dims[0] : 0;
-    const std::size_t columns = is_numeric(*one) ? one->dims[1] : 0;
-    if (rows > 0 && columns > 0 && columns <= max_matlab_values / rows) {
-      arrays.push_back({one->name, rows, columns});
+    if (one->name != nullptr) {
+      add_arrays(*one, one->name, arrays);
     }
   }
   Mat_Rewind(file);
@@ -86,8 +108,16 @@ std::vector<double> doubles_of(const matvar_t& variable, std::size_t count) {
 
 // Column after column.
 std::vector<double> values_of(mat_t* file, const MatlabArray& array, const std::string& path) {
-  const MatlabVariable variable{Mat_VarRead(file, array.name.c_str())};
-  if (!variable || variable->data == nullptr || !is_numeric(*variable) ||
+  std::string name = array.name;
+  std::size_t dot = name.find('.');
+  const MatlabVariable outermost{Mat_VarRead(file, name.substr(0, dot).c_str())};
+  matvar_t* variable = outermost.get();
+  while (variable != nullptr && dot != std::string::npos) {
+    name = name.substr(dot + 1);
+    dot = name.find('.');
+    variable = Mat_VarGetStructFieldByName(variable, name.substr(0, dot).c_str(), 0);
+  }
+  if (variable == nullptr || variable->data == nullptr || !is_numeric(*variable) ||
       variable->data_size <= 0 ||
       variable->nbytes / static_cast<std::size_t>(variable->data_size) < array.size()) {
     throw core::InvalidInput{
@@ -114,7 +144,7 @@ struct MatlabChannel {
 };
 
 bool is_time(const MatlabArray& array) {
-  return seconds_per_unit(array.name) > 0.0 && array.is_vector();
+  return seconds_per_unit(array.own_name()) > 0.0 && array.is_vector();
 }
 
 std::vector<MatlabChannel> matlab_channels(const std::vector<MatlabArray>& arrays) {
@@ -157,12 +187,15 @@ const MatlabChannel& chosen_of(const std::vector<MatlabChannel>& channels,
                   fmt::join(names, ", "), are_many ? " ..." : "")};
 }
 
-// By the times or the scalar of the file.
-std::optional<double> matlab_rate(mat_t* file, const std::vector<MatlabArray>& arrays,
-                                  std::size_t samples, const std::string& path) {
+// By the times or the scalar beside the chosen array, or else of the file.
+std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
+                                  const MatlabArray& chosen, std::size_t samples,
+                                  const std::string& path) {
+  std::ranges::stable_partition(
+      arrays, [&](const MatlabArray& array) { return array.structure() == chosen.structure(); });
   constexpr std::array names{"fs", "rate", "rate_hz", "sample_rate", "sampling_rate"};
   const auto is_rate = [&](const MatlabArray& array) {
-    std::string name = array.name;
+    std::string name = array.own_name();
     std::ranges::transform(name, name.begin(),
                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return array.size() == 1 && std::ranges::find(names, name) != names.end();
@@ -170,7 +203,7 @@ std::optional<double> matlab_rate(mat_t* file, const std::vector<MatlabArray>& a
   for (const MatlabArray& array : arrays) {
     if (is_time(array) && array.size() == samples) {
       return rate_of_times(values_of(file, array, path), [&](std::size_t) { return path; }) /
-             seconds_per_unit(array.name);
+             seconds_per_unit(array.own_name());
     }
   }
   const auto scalar = std::ranges::find_if(arrays, is_rate);
@@ -188,8 +221,8 @@ Recording read_matlab_file(const std::string& file, const ReadingOptions& option
   const std::vector<MatlabChannel> channels = matlab_channels(arrays);
   if (channels.empty()) {
     throw core::InvalidInput{
-        fmt::format("{}: holds no real numeric array of at least {} samples (arrays inside "
-                    "structures are not searched: save them as variables)",
+        fmt::format("{}: holds no real numeric array of at least {} samples (cells and lists of "
+                    "structures are not searched: save their arrays as variables)",
                     file, min_samples)};
   }
   const MatlabChannel& chosen = chosen_of(channels, options.column, file);
@@ -204,7 +237,8 @@ Recording read_matlab_file(const std::string& file, const ReadingOptions& option
     throw core::InvalidInput{
         fmt::format("{}: {} has values that are not finite", file, chosen.name)};
   }
-  const auto rate_hz = matlab_rate(opened.get(), arrays, recording.samples.size(), file);
+  const auto rate_hz =
+      matlab_rate(opened.get(), arrays, *chosen.array, recording.samples.size(), file);
   if (!rate_hz && !(options.rate_hz > 0.0)) {
     throw core::InvalidInput{file + ": states no rate, by times t or a scalar fs (give --rate HZ)"};
   }

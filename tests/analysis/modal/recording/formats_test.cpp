@@ -241,6 +241,25 @@ TEST_CASE("arrays of a MATLAB file are what SciPy wrote, and no sound",
   CHECK_THROWS_WITH(read_recording(directory / "no.mat", {}), Contains("MATLAB"));
 }
 
+TEST_CASE(
+    "an array in a structure of a MATLAB file is named with it, its rate is the one beside it",
+    "[analysis][recordings][formats]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "nested.mat";
+  const auto values = testing::python_numbers(
+      "from scipy.io import savemat\nx = np.round(1000 * np.sin(0.3 * np.arange(80)))\n"
+      "savemat('" +
+      file +
+      "', {'fs': 100.0, 'shaker': {'acc': -x, 'fs': 500.0}, 'hammer': {'plate': {'acc': x, "
+      "'fs': 2000.0}}})\nout(x)\n");
+  ReadingOptions options;
+  CHECK_THROWS_WITH(read_recording(file, options), Contains("shaker.acc, hammer.plate.acc"));
+  options.column = "hammer.plate.acc";
+  const Recording recording = read_recording(file, options);
+  CHECK(recording.rate_hz == Approx(rate_hz));
+  CHECK(recording.samples == values);
+}
+
 TEST_CASE("what a library takes for sound without a header is no recording",
           "[analysis][recordings][formats]") {
   const testing::TempDirectory directory;

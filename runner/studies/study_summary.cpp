@@ -21,6 +21,7 @@
 #include "core/text/plain_text.hpp"
 #include "protocols/axes/axis.hpp"
 #include "protocols/schedule/catch_trials.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "results/store/study_queries.hpp"
@@ -83,20 +84,23 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
                                         std::size_t block_index) {
   const protocols::Block& block = protocol.blocks[block_index];
   const std::uint64_t study_seed = protocol.counterbalancing_seed;
-  return [block, block_index, study_seed](const analysis::Place& place, std::uint64_t draw) {
-    const std::uint64_t seed = core::derived_seed(
-        draw, core::Purpose::participant, static_cast<std::uint64_t>(place.participant_index));
-    protocols::Draw redrawn = protocols::draw_of(study_seed, block_index, seed, place.order_index);
-    redrawn.counterbalancing_seed = draw;
-    std::vector<int> stimuli;
-    for (const auto& next : protocols::ordered_conditions(block, redrawn)) {
-      stimuli.push_back(static_cast<int>(protocols::stimulus_of(block, next.condition)));
-    }
-    for (const std::size_t at : protocols::catch_places(block, redrawn, stimuli.size())) {
-      stimuli.insert(stimuli.begin() + static_cast<std::ptrdiff_t>(at), not_counted);
-    }
-    return stimuli;
-  };
+  const std::size_t groups = protocol.groups.size();
+  return
+      [block, block_index, study_seed, groups](const analysis::Place& place, std::uint64_t draw) {
+        const std::uint64_t seed = core::derived_seed(
+            draw, core::Purpose::participant, static_cast<std::uint64_t>(place.participant_index));
+        protocols::Draw redrawn = protocols::draw_of(
+            study_seed, block_index, seed, protocols::index_in_group(groups, place.order_index));
+        redrawn.counterbalancing_seed = draw;
+        std::vector<int> stimuli;
+        for (const auto& next : protocols::ordered_conditions(block, redrawn)) {
+          stimuli.push_back(static_cast<int>(protocols::stimulus_of(block, next.condition)));
+        }
+        for (const std::size_t at : protocols::catch_places(block, redrawn, stimuli.size())) {
+          stimuli.insert(stimuli.begin() + static_cast<std::ptrdiff_t>(at), not_counted);
+        }
+        return stimuli;
+      };
 }
 
 // Only a random order can be drawn again.

@@ -198,6 +198,7 @@ namespace {
 void check(const LiveSession& live) {
   check_has_blocks(live.protocol);
   check_participant_id(live.request.participant_id);
+  static_cast<void>(asked_group(live.request, live.protocol));
   check_fits(live.protocol, live.rig);
   if (live.console) {
     check_can_listen(live.console->address);

@@ -27,6 +27,9 @@ const Stimulus& Protocol::stimulus(const std::string& name) const {
 const Block& Protocol::block(const std::string& name) const {
   return named(blocks, name, "block");
 }
+const Group& Protocol::group(const std::string& name) const {
+  return named(groups, name, "group");
+}
 const Block* Protocol::find_block(const std::string& name) const {
   const auto found = std::ranges::find(blocks, name, &Block::name);
   return found == blocks.end() ? nullptr : &*found;

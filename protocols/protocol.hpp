@@ -241,6 +241,13 @@ struct BlockOrder {
   std::vector<std::string> blocks;  // none of practice; empty: all
 };
 
+// Of participants, each of whom is in one: a group does these blocks, and no others.
+struct Group {
+  std::string name;
+  std::string label;                // what reports call it
+  std::vector<std::string> blocks;  // in the file's order
+};
+
 // A pre-registered hypothesis; reports treat only these as planned tests.
 struct Hypothesis {
   std::string name;
@@ -284,6 +291,7 @@ struct Protocol {
   Display display;
   std::vector<Block> blocks;  // in the file's order
   BlockOrder block_order;
+  std::vector<Group> groups;               // two or more; none: every participant does all blocks
   std::uint64_t counterbalancing_seed{1};  // which participant gets which balanced order
   std::vector<Hypothesis> hypotheses;
   std::optional<core::MaskingNoise> masking;  // in every trial
@@ -293,5 +301,6 @@ struct Protocol {
   const Stimulus& stimulus(const std::string& name) const;
   const Block& block(const std::string& name) const;
   const Block* find_block(const std::string& name) const;  // nullptr if there is none
+  const Group& group(const std::string& name) const;
 };
 }  // namespace tapstudy::protocols

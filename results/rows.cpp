@@ -34,6 +34,10 @@ std::string to_text(Mode mode) {
   return "";
 }
 
+std::string assignment_of(const GroupRow& group) {
+  return group.is_given ? "given" : "balanced";
+}
+
 std::string to_text(GivenBy given_by) {
   return given_by == GivenBy::participant ? "participant" : "operator";
 }
@@ -61,6 +65,15 @@ TrialStatus trial_status_from(const std::string& text) {
 
 GivenBy given_by_from(const std::string& text) {
   return named(text, {GivenBy::participant, GivenBy::operator_of_session}, "response.given_by");
+}
+
+GroupRow group_from(const std::string& name, const std::string& assignment) {
+  GroupRow group{name, assignment == "given"};
+  if (assignment_of(group) != assignment) {
+    throw StoreError{
+        fmt::format("participant.group_assignment: '{}' is none of balanced, given", assignment)};
+  }
+  return group;
 }
 
 Mode mode_from(const std::string& text) {

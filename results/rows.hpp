@@ -30,6 +30,17 @@ struct StudyRow {
   std::vector<SurfaceRow> surfaces;
 };
 
+// The group of participants that somebody is in, of those that the protocol has.
+struct GroupRow {
+  std::string name;
+  bool is_given{};  // by the operator; else it is that of the participant's place in the study
+  bool operator==(const GroupRow& other) const = default;
+};
+
+// How somebody came to be in it.
+std::string assignment_of(const GroupRow& group);
+GroupRow group_from(const std::string& name, const std::string& assignment);
+
 // One session of one participant. Stored before the first trial, with all data to reproduce it.
 struct SessionRow {
   std::int64_t id{};
@@ -50,6 +61,7 @@ struct SessionRow {
   std::string git_hash;
   std::string compiler;
   std::string started_utc;
+  std::optional<GroupRow> group{};  // unset: the protocol has no groups
 };
 
 // Values of a stimulus on the axes along which it varies, by axis.

@@ -68,7 +68,8 @@ enum class Purpose : std::uint64_t {
   study,
   resampling,
   block_order,
-  square_order
+  square_order,
+  groups
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

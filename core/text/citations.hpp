@@ -72,6 +72,9 @@ inline constexpr std::array references{
     Reference{"Hautus 1995",
               "Hautus, M. J. (1995). Corrections for extreme proportions and their biasing effects "
               "on estimated values of d'. Behavior Research Methods 27, 46–51."},
+    Reference{"Gehan 1965",
+              "Gehan, E. A. (1965). A generalized Wilcoxon test for comparing arbitrarily "
+              "singly-censored samples. Biometrika 52, 203–223."},
     Reference{"Hesterberg 2015",
               "Hesterberg, T. C. (2015). What teachers should know about the bootstrap: Resampling "
               "in the undergraduate statistics curriculum. The American Statistician 69, "
@@ -121,6 +124,9 @@ inline constexpr std::array references{
     Reference{"Plackett 1975",
               "Plackett, R. L. (1975). The analysis of permutations. Journal of the Royal "
               "Statistical Society C 24, 193–202."},
+    Reference{"Schulz & Grimes 2002",
+              "Schulz, K. F. & Grimes, D. A. (2002). Generation of allocation sequences in "
+              "randomised trials: chance, not choice. The Lancet 359, 515–519."},
     Reference{"Schütt et al. 2016",
               "Schütt, H. H., Harmeling, S., Macke, J. H. & Wichmann, F. A. (2016). Painfree and "
               "accurate Bayesian estimation of psychometric functions for (potentially) "
@@ -148,6 +154,10 @@ inline constexpr std::array references{
     Reference{"Wedderburn 1974",
               "Wedderburn, R. W. M. (1974). Quasi-likelihood functions, generalized linear models, "
               "and the Gauss-Newton method. Biometrika 61, 439–447."},
+    Reference{
+        "Welch 1947",
+        "Welch, B. L. (1947). The generalization of 'Student's' problem when several different "
+        "population variances are involved. Biometrika 34, 28–35."},
     Reference{"Wilcoxon 1945",
               "Wilcoxon, F. (1945). Individual comparisons by ranking methods. Biometrics Bulletin "
               "1, 80–83."},

@@ -52,6 +52,7 @@ void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file,
   read_display(top, protocol);
   read_blocks(top, protocol);
   read_block_order(top, protocol);
+  read_groups(top, protocol);
   read_hypotheses(top, protocol);
   read_masking(top, protocol);
   read_simulation(top, protocol);

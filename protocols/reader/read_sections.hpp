@@ -35,6 +35,7 @@ std::vector<std::string> read_form_names(MapReader& reader, const Key& key,
 void read_display(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);
 void read_block_order(MapReader& top, Protocol& protocol);
+void read_groups(MapReader& top, Protocol& protocol);
 // Of a block: what a participant reads and is asked besides the trials' question.
 void read_between_trials(MapReader& block_reader, Block& block);
 ExploreLimits read_explore(MapReader& block_reader, const Protocol& protocol, Presented presented);

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/ordering.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -21,12 +22,15 @@ bool may_move(const Protocol& protocol, const Block& block) {
          (named.empty() || std::ranges::find(named, block.name) != named.end());
 }
 
-// Each with the practice before it.
-std::vector<Unit> with_practice_before(const Protocol& protocol) {
+// Each of the group's with the practice before it.
+std::vector<Unit> with_practice_before(const Protocol& protocol, const Group* group) {
   std::vector<Unit> units;
   bool is_new = true;
   for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
     const Block& block = protocol.blocks[i];
+    if (!does(group, block)) {
+      continue;
+    }
     if (is_new || block.is_fixed) {
       units.emplace_back();
     }
@@ -41,8 +45,8 @@ bool moves(const Protocol& protocol, const Unit& unit) {
   return may_move(protocol, protocol.blocks[unit.back()]);
 }
 
-std::vector<Unit> units_of(const Protocol& protocol) {
-  std::vector<Unit> units = with_practice_before(protocol);
+std::vector<Unit> units_of(const Protocol& protocol, const Group* group) {
+  std::vector<Unit> units = with_practice_before(protocol, group);
   const bool has_each_its_own = std::ranges::all_of(
       units, [&](const Unit& unit) { return !moves(protocol, unit) || unit.size() > 1; });
   if (!units.empty() && units.front().size() > 1 && !has_each_its_own) {
@@ -65,7 +69,8 @@ std::vector<std::size_t> moving(const Protocol& protocol, const std::vector<Unit
   return found;
 }
 
-void reorder(const Protocol& protocol, std::uint64_t participant_seed, int order_index,
+// The index is that within the participant's group.
+void reorder(const Protocol& protocol, std::uint64_t participant_seed, int index,
              std::vector<std::size_t>& places) {
   if (protocol.block_order.order == Order::shuffle) {
     core::Rng rng{core::derived_seed(participant_seed, core::Purpose::block_order)};
@@ -73,11 +78,13 @@ void reorder(const Protocol& protocol, std::uint64_t participant_seed, int order
     return;
   }
   const int n = static_cast<int>(places.size());
+  if (n < 2) {
+    return;  // a group may do one alone of those that move
+  }
   const std::uint64_t seed =
       core::derived_seed(protocol.counterbalancing_seed, core::Purpose::block_order);
   const std::vector<std::size_t> listed = places;
-  const std::vector<int> row =
-      williams_row(n, balanced_sequence(williams_rows(n), {order_index, seed}));
+  const std::vector<int> row = williams_row(n, balanced_sequence(williams_rows(n), {index, seed}));
   std::ranges::transform(row, places.begin(),
                          [&](int i) { return listed[static_cast<std::size_t>(i)]; });
 }
@@ -85,14 +92,14 @@ void reorder(const Protocol& protocol, std::uint64_t participant_seed, int order
 
 std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t participant_seed,
                                         int order_index) {
-  const std::vector<Unit> units = units_of(protocol);
+  const std::vector<Unit> units = units_of(protocol, group_of(protocol, order_index));
   std::vector<const Unit*> ordered;
   std::ranges::transform(units, std::back_inserter(ordered),
                          [](const Unit& unit) { return &unit; });
   if (protocol.block_order.order != Order::listed) {
     const std::vector<std::size_t> places = moving(protocol, units);
     std::vector<std::size_t> drawn = places;
-    reorder(protocol, participant_seed, order_index, drawn);
+    reorder(protocol, participant_seed, index_in_group(protocol, order_index), drawn);
     for (std::size_t i = 0; i < places.size(); ++i) {
       ordered[places[i]] = &units[drawn[i]];
     }
@@ -104,9 +111,10 @@ std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t 
   return sequence;
 }
 
-int balanced_block_orders(const Protocol& protocol) {
-  return protocol.block_order.order == Order::williams
-             ? williams_rows(static_cast<int>(moving(protocol, units_of(protocol)).size()))
+int balanced_block_orders(const Protocol& protocol, const Group* group) {
+  const std::size_t places = moving(protocol, units_of(protocol, group)).size();
+  return protocol.block_order.order == Order::williams && places > 1
+             ? williams_rows(static_cast<int>(places))
              : 1;
 }
 
@@ -116,10 +124,10 @@ int planned_trials(const Block& block) {
 }
 
 Draw draw_of(std::uint64_t counterbalancing_seed, std::size_t block_index,
-             std::uint64_t participant_seed, int order_index) {
-  return {participant_seed, order_index, block_index, counterbalancing_seed,
+             std::uint64_t participant_seed, int index) {
+  return {participant_seed, index, block_index, counterbalancing_seed,
           core::derived_seed(counterbalancing_seed, core::Purpose::catch_trials,
-                             static_cast<std::uint64_t>(order_index))};
+                             static_cast<std::uint64_t>(index))};
 }
 
 namespace {
@@ -128,7 +136,8 @@ Schedule scheduled(const Protocol& protocol, const std::vector<std::size_t>& seq
   Schedule schedule;
   for (const std::size_t i : sequence) {
     const Block& block = protocol.blocks[i];
-    const Draw draw = draw_of(protocol.counterbalancing_seed, i, participant_seed, order_index);
+    const Draw draw = draw_of(protocol.counterbalancing_seed, i, participant_seed,
+                              index_in_group(protocol, order_index));
     for (PlannedTrial& trial : block.task->trials(block, draw)) {
       trial.number = static_cast<int>(schedule.size()) + 1;
       schedule.push_back(std::move(trial));

@@ -131,16 +131,23 @@ class Dataset {
 
   void write_participants() {
     std::string lines;
-    const std::vector<Column> own = known_columns("participant_id mode is_excluded");
+    const bool has_groups = store_->has_groups();
+    const std::vector<Column> own =
+        known_columns(has_groups ? "participant_id mode is_excluded group_name"
+                                 : "participant_id mode is_excluded");
     each_row(*store_, own, "v_sessions GROUP BY participant_id ORDER BY min(session_id)",
              [&](Statement& statement, Row row) {
                row.front() = "sub-" + labels_.participants.by_name.at(statement.text(0));
                lines += tsv_line(row);
              });
-    core::write_new_file(root_ / "participants.tsv", "participant_id\tmode\tis_excluded\n" + lines);
     std::vector<DescribedColumn> described;
-    std::ranges::transform(own, std::back_inserter(described),
-                           [](const Column& column) { return DescribedColumn{column}; });
+    Row header;
+    for (Column column : own) {
+      column.name = column.name == "group_name" ? "group" : column.name;  // as BIDS has it
+      header.emplace_back(column.name);
+      described.push_back({column});
+    }
+    core::write_new_file(root_ / "participants.tsv", tsv_line(header) + lines);
     core::write_new_file(root_ / "participants.json", table_sidecar(described));
   }
 

@@ -15,14 +15,15 @@ struct Source {
 };
 
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage): joined to literals
-#define WHO "session_id participant_id mode is_excluded exclusion_reason "
+#define WHO "session_id participant_id group_name mode is_excluded exclusion_reason "
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage)
 #define WHICH_TRIAL \
   "trial_id " WHO "block task number attempt is_practice is_catch presented status "
 
 constexpr std::array sources{
     Source{"sessions", "One row per session.",
-           WHO "participant_index order_index resumes started_utc language rate_hz device "
+           WHO "group_assignment participant_index order_index resumes started_utc language "
+               "rate_hz device "
                "scheduler program_version git_hash compiler seed planned_order rig_text doctor",
            "v_sessions ORDER BY session_id"},
     Source{"trials", "One row per presentation of a trial.",
@@ -108,8 +109,17 @@ std::string quoted(const std::string& text) {
   return literal + "'";
 }
 
+// Without those of groups where nobody is in one.
+std::vector<Column> columns_of(Store& store, const char* names) {
+  std::vector<Column> columns = known_columns(names);
+  if (!store.has_groups()) {
+    std::erase_if(columns, [](const Column& column) { return column.name.starts_with("group_"); });
+  }
+  return columns;
+}
+
 Table alternatives_table(Store& store, const std::map<std::string, std::string>& axis_units) {
-  std::vector<Column> columns = known_columns(alternative_columns);
+  std::vector<Column> columns = columns_of(store, alternative_columns);
   std::vector<std::string> expressions = names_of(columns);
   store.each_row("SELECT DISTINCT axis FROM axis_value ORDER BY axis", [&](Statement& row) {
     const std::string axis = row.text(0);
@@ -162,7 +172,7 @@ std::vector<Table> study_tables(Store& store,
                                 const std::map<std::string, std::string>& axis_units) {
   std::vector<Table> tables;
   for (const Source& source : sources) {
-    const std::vector<Column> columns = known_columns(source.columns);
+    const std::vector<Column> columns = columns_of(store, source.columns);
     tables.push_back(table_from(store, source, columns, names_of(columns)));
   }
   tables.push_back(alternatives_table(store, axis_units));

@@ -90,6 +90,9 @@ SessionRow session_from(const Json& line) {
   session.git_hash = line.at("git_hash");
   session.compiler = line.at("compiler");
   session.started_utc = line.at("started_utc");
+  if (line.contains("group")) {
+    session.group = group_from(line.at("group"), line.at("group_assignment"));
+  }
   return session;
 }
 
@@ -178,25 +181,30 @@ std::string to_line(const StudyRow& study) {
 }
 
 std::string to_line(const SessionRow& session) {
-  return dumped({{"kind", "session"},
-                 {"session_id", session.id},
-                 {"participant_id", session.participant_id},
-                 {"mode", to_text(session.mode)},
-                 {"participant_index", session.participant_index},
-                 {"order_index", session.order_index},
-                 {"seed", session.seed},
-                 {"resumes", or_null(session.resumes)},
-                 {"started_utc", session.started_utc},
-                 {"rate_hz", session.rate_hz},
-                 {"device", session.device},
-                 {"scheduler", session.scheduler},
-                 {"program_version", session.program_version},
-                 {"git_hash", session.git_hash},
-                 {"compiler", session.compiler},
-                 {"planned_order", session.planned_order},
-                 {"language", session.language},
-                 {"rig_text", session.rig_text},
-                 {"doctor", session.doctor}});
+  Json line{{"kind", "session"},
+            {"session_id", session.id},
+            {"participant_id", session.participant_id},
+            {"mode", to_text(session.mode)},
+            {"participant_index", session.participant_index},
+            {"order_index", session.order_index},
+            {"seed", session.seed},
+            {"resumes", or_null(session.resumes)},
+            {"started_utc", session.started_utc},
+            {"rate_hz", session.rate_hz},
+            {"device", session.device},
+            {"scheduler", session.scheduler},
+            {"program_version", session.program_version},
+            {"git_hash", session.git_hash},
+            {"compiler", session.compiler},
+            {"planned_order", session.planned_order},
+            {"language", session.language},
+            {"rig_text", session.rig_text},
+            {"doctor", session.doctor}};
+  if (session.group) {
+    line["group"] = session.group->name;
+    line["group_assignment"] = assignment_of(*session.group);
+  }
+  return dumped(line);
 }
 
 namespace {
@@ -303,13 +311,18 @@ JournalContent read_journal(const std::string& directory) {
 }
 
 namespace {
-// The keys of the first line whose values the other has not.
+// The keys whose values the two lines have not both.
 std::string differing_keys(const std::string& one, const std::string& other) {
   const nlohmann::ordered_json first = nlohmann::ordered_json::parse(one);
   const nlohmann::ordered_json second = nlohmann::ordered_json::parse(other);
   std::vector<std::string> keys;
   for (const auto& [key, value] : first.items()) {
     if (!second.contains(key) || second.at(key) != value) {
+      keys.push_back(key);
+    }
+  }
+  for (const auto& [key, value] : second.items()) {
+    if (!first.contains(key)) {
       keys.push_back(key);
     }
   }

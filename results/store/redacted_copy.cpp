@@ -9,6 +9,7 @@
 namespace tapstudy::results {
 namespace {
 namespace fs = std::filesystem;
+using namespace std::string_literals;
 
 // Copies the tables of schema.hpp, those that refer to others last. Columns are named, so that a
 // new one is an error until somebody has decided about it; so are the states whose details the
@@ -18,7 +19,8 @@ INSERT INTO study SELECT id, title, (SELECT file FROM temp.protocol_file), proto
   protocol_sha256, created_utc FROM original.study;
 INSERT INTO surface SELECT file, sha256, size, zstd
   FROM original.surface;
-INSERT INTO participant SELECT pseudonym, mode, participant_index, order_index
+INSERT INTO participant SELECT pseudonym, mode, participant_index, order_index,
+  pseudonym.group_name, pseudonym.group_assignment
   FROM original.participant JOIN temp.pseudonym USING (participant_id)
   ORDER BY participant.rowid;
 INSERT INTO session SELECT session_id, pseudonym, seed, planned_order, language, resumes, rate_hz,
@@ -58,13 +60,16 @@ void fill_database(Database& database, const std::string& original, const StudyR
                    const std::set<std::pair<std::string, std::string>>& kept_items) {
   database.run("PRAGMA temp_store = MEMORY");
   Statement{database, "ATTACH ? AS original"}.bind(original).finish();
+  const bool has_groups = database.pragma("original.user_version") != schema_version_without_groups;
   Transaction all{database};
   database.run(schema_sql);
   database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", application_id,
                            schema_version));
   database.run(
       "CREATE TEMP TABLE pseudonym AS SELECT participant_id, "
-      "printf('person-%03d', row_number() OVER (ORDER BY min(session_id))) AS pseudonym "
+      "printf('person-%03d', row_number() OVER (ORDER BY min(session_id))) AS pseudonym, "s +
+      (has_groups ? "group_name, group_assignment "
+                  : "NULL AS group_name, NULL AS group_assignment ") +
       "FROM original.participant LEFT JOIN original.session USING (participant_id) "
       "GROUP BY participant_id; "
       "CREATE TEMP TABLE kept (form TEXT, item TEXT); CREATE TEMP TABLE protocol_file (file TEXT)");

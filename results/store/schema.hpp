@@ -1,8 +1,14 @@
 #pragma once
+#include <array>
+#include <string>
+#include <string_view>
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 11;
+inline constexpr int schema_version = 12;
+// Lacks the participants' groups, which its protocols did not have: such a store is read, and goes
+// on, as it is.
+inline constexpr int schema_version_without_groups = 11;
 
 // Tables hold each fact once; the views v_… are for reading by hand and for exports.
 inline constexpr const char* schema_sql = R"sql(
@@ -25,6 +31,9 @@ CREATE TABLE participant (
   mode TEXT NOT NULL CHECK (mode IN ('real', 'pilot', 'simulated')),
   participant_index INTEGER NOT NULL,  -- from 0 in each mode
   order_index INTEGER NOT NULL,        -- which of the balanced orders, from 0
+  group_name TEXT,                     -- NULL: the protocol has no groups
+  group_assignment TEXT CHECK (group_assignment IN ('balanced', 'given')),
+  CHECK ((group_name IS NULL) = (group_assignment IS NULL)),
   UNIQUE (mode, participant_index)
 ) STRICT;
 CREATE TABLE session (
@@ -149,13 +158,13 @@ CREATE VIEW excluded_participant AS SELECT participant_id, detail AS exclusion_r
    FROM operator_action JOIN session USING (session_id)
    WHERE action IN ('exclude', 'include'))
   WHERE from_latest = 1 AND action = 'exclude';
-CREATE VIEW v_sessions AS SELECT session_id, participant_id, participant_index, order_index, mode,
+CREATE VIEW v_sessions AS SELECT session_id, participant_id, group_name, group_assignment, participant_index, order_index, mode,
     exclusion_reason IS NOT NULL AS is_excluded, exclusion_reason, resumes, started_utc, language,
     rate_hz, device, scheduler, program_version, git_hash, compiler, seed, planned_order,
     rig_text, doctor
   FROM session JOIN participant USING (participant_id)
   LEFT JOIN excluded_participant USING (participant_id);
-CREATE VIEW trial_context AS SELECT trial_id, session_id, participant_id, mode, is_excluded,
+CREATE VIEW trial_context AS SELECT trial_id, session_id, participant_id, group_name, mode, is_excluded,
     exclusion_reason, block, task, number, attempt, repetition, is_practice, is_catch, presented,
     status, duration_s,
     CASE (SELECT count(*) FROM alternative WHERE alternative.trial_id = trial.trial_id)
@@ -163,7 +172,7 @@ CREATE VIEW trial_context AS SELECT trial_id, session_id, participant_id, mode, 
     END AS stimulus               -- NULL if there were several
   FROM trial JOIN v_sessions USING (session_id);
 -- An alternative is visited from the switch to it until the next switch or the trial's end.
-CREATE VIEW v_visits AS SELECT trial_id, session_id, participant_id, mode, is_excluded, exclusion_reason, block, task,
+CREATE VIEW v_visits AS SELECT trial_id, session_id, participant_id, group_name, mode, is_excluded, exclusion_reason, block, task,
     number, attempt, is_practice, is_catch, presented, status, visit, visited.position AS position, label,
     alternative.stimulus AS stimulus, begin_s,
     coalesce(next_s, duration_s) AS end_s, coalesce(next_s, duration_s) - begin_s AS dwell_s
@@ -172,7 +181,7 @@ CREATE VIEW v_visits AS SELECT trial_id, session_id, participant_id, mode, is_ex
       lead(t_s) OVER (PARTITION BY trial_id ORDER BY t_s) AS next_s
     FROM event WHERE kind = 'switch') AS visited
   JOIN trial_context USING (trial_id) JOIN alternative USING (trial_id, position);
-CREATE VIEW v_stimuli AS SELECT trial_id, session_id, participant_id, mode, is_excluded, exclusion_reason, block, task,
+CREATE VIEW v_stimuli AS SELECT trial_id, session_id, participant_id, group_name, mode, is_excluded, exclusion_reason, block, task,
     number, attempt, is_practice, is_catch, presented, status, alternative.position AS position, label,
     alternative.stimulus AS stimulus, is_comparison,
     (SELECT group_concat(axis || '=' || value, ' ') FROM axis_value
@@ -183,7 +192,7 @@ CREATE VIEW v_stimuli AS SELECT trial_id, session_id, participant_id, mode, is_e
   LEFT JOIN (SELECT trial_id, position, count(*) AS visits,
       sum(dwell_s) AS total_dwell_s FROM v_visits GROUP BY trial_id, position)
     USING (trial_id, position);
-CREATE VIEW v_answers AS SELECT response_id, trial_id, session_id, participant_id, mode, is_excluded, exclusion_reason, block, task,
+CREATE VIEW v_answers AS SELECT response_id, trial_id, session_id, participant_id, group_name, mode, is_excluded, exclusion_reason, block, task,
     number, attempt, is_practice, is_catch, presented, status,
     stimulus, response, is_correct, response_time_s, time_from_first_contact_s, confidence,
     given_by, supersedes, supersedes IS NOT NULL AS is_correction,
@@ -214,4 +223,21 @@ CREATE VIEW v_trials AS SELECT trial_context.*, current_response.response AS res
     AND first.supersedes IS NULL
   LEFT JOIN tick_statistics ON tick_statistics.trial_id = trial_context.trial_id;
 )sql";
+
+// What of the above a schema without groups lacks.
+inline constexpr std::array<std::string_view, 5> schema_of_groups{
+    "  group_name TEXT,                     -- NULL: the protocol has no groups\n",
+    "  group_assignment TEXT CHECK (group_assignment IN ('balanced', 'given')),\n",
+    "  CHECK ((group_name IS NULL) = (group_assignment IS NULL)),\n", "group_name, ",
+    "group_assignment, "};
+
+inline std::string schema_sql_without_groups() {
+  std::string sql = schema_sql;
+  for (const std::string_view text : schema_of_groups) {
+    for (auto at = sql.find(text); at != std::string::npos; at = sql.find(text)) {
+      sql.erase(at, text.size());
+    }
+  }
+  return sql;
+}
 }  // namespace tapstudy::results

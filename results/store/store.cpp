@@ -308,7 +308,7 @@ void Store::check_schema() {
     return objects;
   };
   Database reference = Database::in_memory("the schema");
-  reference.run(schema_sql);
+  reference.run(has_columns_of_groups() ? schema_sql : schema_sql_without_groups());
   const std::set<std::string> known = objects_of(reference);
   const std::set<std::string> found = objects_of(database_);
   for (const std::string& object : found) {
@@ -327,11 +327,15 @@ void Store::check_version() {
     throw StoreError{database_.file() + ": is not a tapstudy database"};
   }
   const std::int64_t version = database_.pragma("user_version");
-  if (version != schema_version) {
+  if (version != schema_version && version != schema_version_without_groups) {
     throw StoreError{
-        fmt::format("{}: has schema {}, this program reads {} (the version of "
+        fmt::format("{}: has schema {}, this program reads {} and {} (the version of "
                     "tapstudy that wrote it reads it)",
-                    database_.file(), version, schema_version)};
+                    database_.file(), version, schema_version_without_groups, schema_version)};
   }
+}
+
+bool Store::has_columns_of_groups() {
+  return database_.pragma("user_version") != schema_version_without_groups;
 }
 }  // namespace tapstudy::results

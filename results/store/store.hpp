@@ -60,9 +60,13 @@ class Store {
   // The place of an existing participant, or the next free one of the mode. The order is the first
   // that no other participant of the mode has: those who were excluded, whose session the operator
   // ended with trials left, or who are no longer in a session and answered nothing that counts, use
-  // none up. Throws InvalidInput if the participant is there already in another mode.
-  Place place_of(const std::string& participant_id, Mode mode, const OtherParticipants& others);
+  // none up. Where `may_have` is given, the first of those orders that may be had. Throws
+  // InvalidInput if the participant is there already in another mode.
+  Place place_of(const std::string& participant_id, Mode mode, const OtherParticipants& others,
+                 const std::function<bool(int order_index)>& may_have = {});
   bool has_sessions(const std::string& participant_id);
+  // Whether any participant is in a group.
+  bool has_groups();
   // No other program adds anything while `act` runs; all that it adds is kept, or nothing.
   void in_one_transaction(const std::function<void()>& act);
   // Adds the participant if new; fills in the row's id.
@@ -117,6 +121,9 @@ class Store {
   void check_is_sound();
   void check_version();
   void check_schema();
+  bool has_columns_of_groups();
+  void add_participant(const SessionRow& session);
+  std::string session_columns();
   void create(const StudyRow& study);
   void insert_trial(const TrialRecord& record);
   void rewrite_database();
@@ -131,7 +138,8 @@ class Store {
                        const std::function<void(JournalEntries&)>& insert);
   void check_has_not_moved();
   int next_participant_index(Mode mode);
-  int free_order_index(Mode mode, const OtherParticipants& others);
+  int free_order_index(Mode mode, const OtherParticipants& others,
+                       const std::function<bool(int order_index)>& may_have);
   std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
   AlternativesOfTrials alternatives_where(const char* condition,
                                           std::optional<std::int64_t> trial_id);

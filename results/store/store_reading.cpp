@@ -24,11 +24,6 @@ std::uint64_t seed_from(const std::string& text, const std::string& where) {
   return seed;
 }
 
-constexpr const char* session_columns =
-    "session_id, participant_id, participant_index, order_index, mode, seed, planned_order, "
-    "language, resumes, rate_hz, "
-    "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc";
-
 SessionRow session_from(Statement& row, const std::string& file) {
   SessionRow session;
   session.id = row.integer(0);
@@ -49,15 +44,26 @@ SessionRow session_from(Statement& row, const std::string& file) {
   session.git_hash = row.text(15);
   session.compiler = row.text(16);
   session.started_utc = row.text(17);
+  if (const auto group = row.optional_text(18)) {
+    session.group = group_from(*group, row.text(19));
+  }
   return session;
 }
 }  // namespace
+
+std::string Store::session_columns() {
+  return fmt::format(
+      "session_id, participant_id, participant_index, order_index, mode, seed, planned_order, "
+      "language, resumes, rate_hz, rig_text, device, scheduler, doctor, program_version, git_hash, "
+      "compiler, started_utc, {}",
+      has_columns_of_groups() ? "group_name, group_assignment" : "NULL, NULL");
+}
 
 std::vector<SessionRow> Store::sessions() {
   std::vector<SessionRow> sessions;
   Statement row{database_, fmt::format("SELECT {} FROM session JOIN participant "
                                        "USING (participant_id) ORDER BY session_id",
-                                       session_columns)};
+                                       session_columns())};
   while (row.step()) {
     sessions.push_back(session_from(row, database_.file()));
   }
@@ -67,7 +73,7 @@ std::vector<SessionRow> Store::sessions() {
 SessionRow Store::session_of(std::int64_t session_id) {
   Statement row{database_, fmt::format("SELECT {} FROM session JOIN participant "
                                        "USING (participant_id) WHERE session_id = ?",
-                                       session_columns)};
+                                       session_columns())};
   row.bind(session_id);
   if (!row.step()) {
     throw StoreError{fmt::format("{}: has no session {}", database_.file(), session_id)};
@@ -155,7 +161,7 @@ std::optional<SessionRow> Store::latest_session(const std::string& participant_i
   Statement row{database_, fmt::format("SELECT {} FROM session JOIN participant "
                                        "USING (participant_id) WHERE participant_id = ? "
                                        "ORDER BY session_id DESC LIMIT 1",
-                                       session_columns)};
+                                       session_columns())};
   row.bind(participant_id);
   return row.step() ? std::optional{session_from(row, database_.file())} : std::nullopt;
 }

@@ -22,13 +22,14 @@ constexpr const char* ended_by_operator =
 }  // namespace
 
 Store::Place Store::place_of(const std::string& participant_id, Mode mode,
-                             const OtherParticipants& others) {
+                             const OtherParticipants& others,
+                             const std::function<bool(int order_index)>& may_have) {
   Statement row{
       database_,
       "SELECT participant_index, order_index, mode FROM participant WHERE participant_id = ?"};
   row.bind(participant_id);
   if (!row.step()) {
-    return {next_participant_index(mode), free_order_index(mode, others)};
+    return {next_participant_index(mode), free_order_index(mode, others, may_have)};
   }
   if (row.text(2) != to_text(mode)) {
     throw core::InvalidInput{
@@ -47,7 +48,8 @@ int Store::next_participant_index(Mode mode) {
 
 // Used by who has answered what counts, unless the operator ended their last session before its
 // end.
-int Store::free_order_index(Mode mode, const OtherParticipants& others) {
+int Store::free_order_index(Mode mode, const OtherParticipants& others,
+                            const std::function<bool(int order_index)>& may_have) {
   const std::map<std::string, std::string> excluded = excluded_participants();
   Statement row{database_,
                 "SELECT participant_id, order_index, participant_id IN "
@@ -68,7 +70,7 @@ int Store::free_order_index(Mode mode, const OtherParticipants& others) {
     }
   }
   int free = 0;
-  while (used.contains(free)) {
+  while (used.contains(free) || (may_have && !may_have(free))) {
     ++free;
   }
   return free;
@@ -94,17 +96,41 @@ void Store::in_one_transaction(const std::function<void()>& act) {
   journal_sessions();
 }
 
-void Store::add_session(SessionRow& session) {
-  Transaction all{database_};
-  Statement{database_,
-            "INSERT INTO participant (participant_id, mode, participant_index, order_index) "
-            "VALUES (?, ?, ?, ?) "
-            "ON CONFLICT (participant_id) DO NOTHING"}
-      .bind(session.participant_id)
+bool Store::has_groups() {
+  if (!has_columns_of_groups()) {
+    return false;
+  }
+  Statement row{database_, "SELECT count(group_name) FROM participant"};
+  row.step();
+  return row.integer(0) > 0;
+}
+
+void Store::add_participant(const SessionRow& session) {
+  const bool has_columns = has_columns_of_groups();
+  if (session.group && !has_columns) {
+    throw StoreError{database_.file() + ": is of a study without groups"};
+  }
+  Statement row{database_,
+                fmt::format("INSERT INTO participant (participant_id, mode, participant_index, "
+                            "order_index{}) VALUES (?, ?, ?, ?{}) "
+                            "ON CONFLICT (participant_id) DO NOTHING",
+                            has_columns ? ", group_name, group_assignment" : "",
+                            has_columns ? ", ?, ?" : "")};
+  row.bind(session.participant_id)
       .bind(to_text(session.mode))
       .bind(session.participant_index)
-      .bind(session.order_index)
-      .finish();
+      .bind(session.order_index);
+  if (has_columns && session.group) {
+    row.bind(session.group->name).bind(assignment_of(*session.group));
+  } else if (has_columns) {
+    row.bind_null().bind_null();
+  }
+  row.finish();
+}
+
+void Store::add_session(SessionRow& session) {
+  Transaction all{database_};
+  add_participant(session);
   Statement{
       database_,
       "INSERT INTO session (participant_id, seed, planned_order, language, resumes, rate_hz, "

@@ -8,6 +8,7 @@
 #include "core/random/rng.hpp"
 #include "device/hand/penalty_limit.hpp"
 #include "protocols/reader/read_protocol.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "runner/commands/check_design.hpp"
 #include "runner/commands/check_models.hpp"
@@ -212,8 +213,9 @@ void run_check(const CheckOptions& options) {
   const std::uint64_t seed =
       core::derived_seed(seed_from(options.seed, "--seed"), core::Purpose::participant,
                          static_cast<std::uint64_t>(index));
-  fmt::print("\nschedule of participant {} of a simulation with seed {}\n", participants,
-             options.seed);
+  const protocols::Group* const group = protocols::group_of(protocol, index);
+  fmt::print("\nschedule of participant {} of a simulation with seed {}{}\n", participants,
+             options.seed, group == nullptr ? "" : fmt::format(", in group {}", group->name));
   print_schedule(make_schedule(protocol, seed, index), options.shows_schedule);
   if (options.simulations > 0) {
     print_simulated(

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "analysis/statistics/proportion.hpp"
 #include "protocols/protocol.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "results/traces/trace_codec.hpp"
@@ -23,7 +25,13 @@ namespace tapstudy::runner {
 namespace {
 constexpr double alpha = 0.05;
 
-void warn_of_balance(const protocols::Block& block, int participants) {
+std::optional<int> first_not_multiple(const std::vector<int>& counts, int of) {
+  const auto found = std::ranges::find_if(counts, [&](int count) { return count % of != 0; });
+  return found == counts.end() ? std::nullopt : std::optional{*found};
+}
+
+// Of each group that does the block, as many participants as it has.
+void warn_of_balance(const protocols::Block& block, const std::vector<int>& participants) {
   const int conditions = static_cast<int>(protocols::conditions(block));
   if (!block.task->uses_order() || conditions < 2) {
     return;
@@ -37,10 +45,11 @@ void warn_of_balance(const protocols::Block& block, int participants) {
         "    note: random orders balance only on average; order: williams balances {} stimuli over "
         "every {} participants\n",
         conditions, rows);
-  } else if (participants % rows != 0) {
-    fmt::print("    warning: {} participants do not balance the {} orders (use a multiple of {})\n",
-               participants, rows, rows);
-  } else if (participants % sequences != 0) {
+  } else if (const auto broken = first_not_multiple(participants, rows)) {
+    fmt::print(
+        "    warning: {} participants{} do not balance the {} orders (use a multiple of {})\n",
+        *broken, participants.size() > 1 ? " of a group" : "", rows, rows);
+  } else if (first_not_multiple(participants, sequences)) {
     fmt::print(
         "    note: balanced within each repetition; what follows what from one repetition to the "
         "next is with a multiple of {} participants\n",
@@ -176,7 +185,12 @@ using BlockOrderDealt = std::vector<std::size_t>;  // places in the protocol's l
 std::set<BlockOrderDealt> dealt_orders(const protocols::Protocol& protocol) {
   constexpr int random_orders = 200;
   const bool is_random = protocol.block_order.order == protocols::Order::shuffle;
-  const int count = is_random ? random_orders : protocols::balanced_block_orders(protocol);
+  const std::vector<const protocols::Group*> groups = protocols::groups_of(protocol);
+  int count = is_random ? random_orders : 1;
+  for (const protocols::Group* const group : groups) {
+    count = std::max(count, protocols::balanced_block_orders(protocol, group));
+  }
+  count *= static_cast<int>(groups.size());
   std::set<BlockOrderDealt> orders;
   for (int i = 0; i < count; ++i) {
     orders.insert(protocols::block_sequence(protocol, static_cast<std::uint64_t>(i), i));
@@ -186,8 +200,10 @@ std::set<BlockOrderDealt> dealt_orders(const protocols::Protocol& protocol) {
 
 bool counted_trials_precede(std::size_t practice, const BlockOrderDealt& order,
                             const protocols::Protocol& protocol) {
-  return std::any_of(order.begin(), std::ranges::find(order, practice),
-                     [&](std::size_t i) { return !protocol.blocks[i].is_practice; });
+  const auto at = std::ranges::find(order, practice);
+  return at != order.end() && std::any_of(order.begin(), at, [&](std::size_t i) {
+           return !protocol.blocks[i].is_practice;
+         });
 }
 
 std::string described_order(const BlockOrderDealt& order, const protocols::Protocol& protocol) {
@@ -231,12 +247,16 @@ void print_orders_of_practice(const protocols::Protocol& protocol) {
 
 void warn_of_block_order(const protocols::Protocol& protocol, int participants) {
   print_orders_of_practice(protocol);
-  const int orders = protocols::balanced_block_orders(protocol);
-  if (participants % orders != 0) {
-    fmt::print(
-        "  warning: {} participants do not balance the {} orders of the blocks (use a multiple of "
-        "{})\n",
-        participants, orders, orders);
+  for (const protocols::Group* const group : protocols::groups_of(protocol)) {
+    const int orders = protocols::balanced_block_orders(protocol, group);
+    const int members = protocols::members(protocol, group, participants);
+    if (members % orders != 0) {
+      fmt::print(
+          "  warning: {} participants{} do not balance the {} orders of the blocks (use a multiple "
+          "of {})\n",
+          members, group == nullptr ? "" : fmt::format(" in group '{}'", group->name), orders,
+          orders);
+    }
   }
   if (protocol.block_order.order != protocols::Order::listed) {
     return;
@@ -253,37 +273,94 @@ void warn_of_block_order(const protocols::Protocol& protocol, int participants) 
   }
 }
 
+// Of each group that does the block, or of all.
+std::vector<int> members_who_do(const protocols::Block& block, const protocols::Protocol& protocol,
+                                int participants) {
+  std::vector<int> counts;
+  for (const protocols::Group* const group : protocols::groups_of(protocol)) {
+    if (protocols::does(group, block)) {
+      counts.push_back(protocols::members(protocol, group, participants));
+    }
+  }
+  return counts;
+}
+
 void print_blocks(const protocols::Protocol& protocol, const BlockLengths& lengths,
                   int participants) {
   fmt::print("{}\n\n", protocol.title);
-  double total_s = 0.0;
-  double recorded_s = 0.0;
   for (const protocols::Block& block : protocol.blocks) {
     const BlockLength& length = lengths.at(block.name);
-    const double seconds = length.usual * simulated_trial_s(protocol, block);
-    total_s += seconds;
-    recorded_s += block.presented == protocols::Presented::real_plates ? 0.0 : seconds;
-    fmt::print("  {}, about {:.0f} s of tapping\n", heading(block, length), seconds);
+    fmt::print("  {}, about {:.0f} s of tapping\n", heading(block, length),
+               length.usual * simulated_trial_s(protocol, block));
     if (block.is_practice) {
       continue;  // in no result
     }
-    warn_of_balance(block, participants);
+    warn_of_balance(block, members_who_do(block, protocol, participants));
     if (block.comparison) {
       print_procedures(protocol.stimulus(block.stimuli.front()), *block.comparison,
                        block.task->has_own_guess_rate()
                            ? std::nullopt
                            : std::optional{block.task->guess_rate(block, protocol)});
     } else if (block.task->has_chance_level()) {
-      print_power(protocol, block, participants);
+      print_power(protocol, block, protocols::participants_of(protocol, block, participants));
       warn_of_unequal_answers(block);
     }
   }
-  const double screens_s = seconds_of_screens(protocol, lengths);
-  fmt::print("\n  {} participants, about {} min each: {} of tapping, {} for the screens below\n",
-             participants, minutes(total_s) + minutes(screens_s), minutes(total_s),
-             minutes(screens_s));
+}
+
+// What a session asks of a participant, roughly.
+struct Session {
+  int trials{};
+  double tapped_s{};
+  double recorded_s{};
+  double screens_s{};
+};
+Session session_of(const protocols::Group* group, const protocols::Protocol& protocol,
+                   const BlockLengths& lengths) {
+  Session session{.screens_s = seconds_of_screens(protocol, group, lengths)};
+  for (const protocols::Block& block : protocol.blocks) {
+    if (protocols::does(group, block)) {
+      const int trials = lengths.at(block.name).usual;
+      const double seconds = trials * simulated_trial_s(protocol, block);
+      session.trials += trials;
+      session.tapped_s += seconds;
+      session.recorded_s += block.presented == protocols::Presented::real_plates ? 0.0 : seconds;
+    }
+  }
+  return session;
+}
+
+// "group trained (with training): practice, training, test; about 40 trials; 5 of 10"
+std::string described_group(const protocols::Group& group, const Session& session, int members,
+                            int participants) {
+  return fmt::format("group {}{}: {}; {}; {} of {}", group.name,
+                     group.label == group.name ? "" : fmt::format(" ({})", group.label),
+                     fmt::join(group.blocks, ", "),
+                     counted(static_cast<std::size_t>(session.trials), "trial"), members,
+                     participants);
+}
+
+void print_sessions(const protocols::Protocol& protocol, const BlockLengths& lengths,
+                    int participants) {
+  fmt::print("\n");
+  double recorded_s = 0.0;
+  for (const protocols::Group* const group : protocols::groups_of(protocol)) {
+    const Session session = session_of(group, protocol, lengths);
+    const int members = protocols::members(protocol, group, participants);
+    recorded_s += session.recorded_s * members;
+    fmt::print("  {} participants, about {} min each: {} of tapping, {} for the screens below\n",
+               group == nullptr ? std::to_string(participants)
+                                : described_group(*group, session, members, participants),
+               minutes(session.tapped_s) + minutes(session.screens_s), minutes(session.tapped_s),
+               minutes(session.screens_s));
+  }
+  const auto groups = static_cast<int>(std::max<std::size_t>(protocol.groups.size(), 1));
+  if (participants % groups != 0) {
+    fmt::print("  warning: {} participants are not as many in each of {} groups\n", participants,
+               groups);
+  }
   fmt::print("  about {:.0f} MB of disk for all, if they tap no longer than simulated ones\n",
-             1e-6 * results::usual_bytes_per_tick * recorded_s * protocol.rate_hz * participants);
+             1e-6 * results::usual_bytes_per_tick * recorded_s * protocol.rate_hz);
 }
 
 void print_languages(const protocols::Protocol& protocol) {
@@ -312,6 +389,7 @@ void print_design(const protocols::Protocol& protocol, int participants) {
   }
   const BlockLengths lengths = lengths_of(protocol);
   print_blocks(protocol, lengths, participants);
+  print_sessions(protocol, lengths, participants);
   warn_of_block_order(protocol, participants);
   if (protocol.masking) {
     fmt::print("\nmasking\n  {} in every trial; {}\n", described(*protocol.masking),

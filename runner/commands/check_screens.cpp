@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "protocols/procedures/simulated_length.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "runner/console/scenes.hpp"
 #include "runner/session/engine/between_trials.hpp"
@@ -161,12 +162,15 @@ void add_trials(const protocols::Protocol& protocol, const protocols::Block& blo
   }
 }
 std::vector<ScreenGroup> screens_of(const protocols::Protocol& protocol,
-                                    const BlockLengths& lengths) {
+                                    const protocols::Group* group, const BlockLengths& lengths) {
   std::vector<ScreenGroup> screens;
   add_instructions(protocol.instructions, "the study", screens);
   add_forms(protocol, protocol.forms_before, screens);
   const protocols::Block* before = nullptr;
   for (const protocols::Block& block : protocol.blocks) {
+    if (!protocols::does(group, block)) {
+      continue;
+    }
     add_instructions(block.instructions, block.name, screens);
     if (before != nullptr && is_end_of_practice_said(*before, block)) {
       screens.push_back({"the practice is over", 1, feedback_s});
@@ -206,22 +210,26 @@ void note_hidden_plates(const protocols::Protocol& protocol) {
 
 }  // namespace
 
-double seconds_of_screens(const protocols::Protocol& protocol, const BlockLengths& lengths) {
+double seconds_of_screens(const protocols::Protocol& protocol, const protocols::Group* group,
+                          const BlockLengths& lengths) {
   double seconds = 0.0;
-  for (const ScreenGroup& group : screens_of(protocol, lengths)) {
-    seconds += group.seconds;
+  for (const ScreenGroup& screens : screens_of(protocol, group, lengths)) {
+    seconds += screens.seconds;
   }
   return seconds;
 }
 
 void print_screens(const protocols::Protocol& protocol, const BlockLengths& lengths) {
-  fmt::print("\nscreens of a participant\n");
-  int total = 0;
-  for (const ScreenGroup& screen : screens_of(protocol, lengths)) {
-    fmt::print("  {:>4}  {}\n", screen.count, screen.shown);
-    total += screen.count;
+  for (const protocols::Group* const group : protocols::groups_of(protocol)) {
+    fmt::print("\nscreens of a participant{}\n",
+               group == nullptr ? "" : fmt::format(" of group {}", group->name));
+    int total = 0;
+    for (const ScreenGroup& screen : screens_of(protocol, group, lengths)) {
+      fmt::print("  {:>4}  {}\n", screen.count, screen.shown);
+      total += screen.count;
+    }
+    fmt::print("  {:>4}  in all, if no trial is repeated\n", total);
   }
-  fmt::print("  {:>4}  in all, if no trial is repeated\n", total);
   warn_of_unasked_forms(protocol);
   note_hidden_plates(protocol);
 }

@@ -18,8 +18,11 @@ BlockLengths lengths_of(const protocols::Protocol& protocol);
 // most 1000)"
 std::string describe_length(const protocols::Block& block, const BlockLength& length);
 
-// Seconds that one participant spends on the screens, roughly; without the tapping.
-double seconds_of_screens(const protocols::Protocol& protocol, const BlockLengths& lengths);
-// Prints the screens that one participant sees, in their order, if no trial is repeated.
+// Seconds that one participant of the group (nullptr: anybody) spends on the screens, roughly;
+// without the tapping.
+double seconds_of_screens(const protocols::Protocol& protocol, const protocols::Group* group,
+                          const BlockLengths& lengths);
+// Prints the screens that one participant of each group sees, in their order, if no trial is
+// repeated.
 void print_screens(const protocols::Protocol& protocol, const BlockLengths& lengths);
 }  // namespace tapstudy::runner

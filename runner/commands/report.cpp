@@ -272,8 +272,8 @@ void add_report(CommandParser& line) {
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
                  "Which sessions: real, pilot or simulated");
   command.option("--only", options->only,
-                 "Only these parts, comma-separated: names of blocks, contrasts, confidence, "
-                 "sessions, procedures, questionnaires, rendered");
+                 "Only these parts, comma-separated: names of blocks, contrasts, groups, "
+                 "confidence, sessions, procedures, questionnaires, rendered");
   command.flag("--all", options->shows_all, "Print the rows of all participants, however many");
   command.flag("--replace", options->replace, "Replace an earlier report");
   command.on_run([options] { run_report(*options); });

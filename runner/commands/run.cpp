@@ -22,6 +22,7 @@ struct RunOptions {
   std::string rig;
   std::string seed;
   std::string row;
+  std::string group;
   std::string console;
   std::string listen;
   std::string language;
@@ -66,6 +67,7 @@ SessionRequest request_of(const RunOptions& options) {
   request.participant_id = options.participant;
   request.mode = options.pilot ? results::Mode::pilot : results::Mode::real;
   request.language = options.language;
+  request.group = options.group;
   request.resume = options.resume ? Resume::yes : Resume::no;
   if (!options.seed.empty()) {
     request.seed = seed_from(options.seed, "--seed");
@@ -139,6 +141,8 @@ void add_run(CommandParser& line) {
   command.option("--seed", options->seed, "Seed of the order; drawn and stored if not given");
   command.option("--row", options->row,
                  "Which of the balanced orders, from 1; default: the first unused one");
+  command.option("--group", options->group,
+                 "Group of a new participant; default: that of the order, which balances groups");
   command.option_with_or_without_value(
       "--console", options->console, "0",
       "Serve one page for the participant and one for the operator, on this port or a free one");

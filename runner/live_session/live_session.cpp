@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "device/loop/sleep_inhibitor.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "runner/live_session/live_trials.hpp"
 #include "runner/session/devices/device_kind.hpp"
 #include "runner/session/devices/masking_card.hpp"
@@ -84,6 +85,43 @@ void check_keeps_order(const SessionRequest& request, const results::SessionRow&
         "--seed: this participant's order was drawn with seed {}, and --resume keeps it",
         earlier.seed)};
   }
+  if (!request.group.empty() && (!earlier.group || request.group != earlier.group->name)) {
+    throw core::InvalidInput{
+        fmt::format("--group: this participant is in {}, and --resume keeps it",
+                    earlier.group ? "'" + earlier.group->name + "'" : std::string{"no group"})};
+  }
+}
+
+// nullptr: none is asked for. Throws InvalidInput if there is no such group.
+const protocols::Group* asked_group(const SessionRequest& request,
+                                    const protocols::Protocol& protocol) {
+  if (request.group.empty()) {
+    return nullptr;
+  }
+  if (protocol.groups.empty()) {
+    throw core::InvalidInput{"--group: this protocol has no groups"};
+  }
+  try {
+    return &protocol.group(request.group);
+  } catch (const core::InvalidInput& error) {
+    throw core::InvalidInput{fmt::format("--group: {}", error.what())};
+  }
+}
+
+// Of a participant with this order index, of whom there was no session before.
+std::optional<results::GroupRow> group_row(const protocols::Protocol& protocol, int order_index,
+                                           const protocols::Group* asked) {
+  const protocols::Group* const group = protocols::group_of(protocol, order_index);
+  if (group == nullptr) {
+    return std::nullopt;
+  }
+  if (asked != nullptr && asked != group) {
+    throw core::InvalidInput{fmt::format(
+        "--row: order {} is of group '{}', not of '{}' (--group alone takes the first unused order "
+        "of its group)",
+        order_index + 1, group->name, asked->name)};
+  }
+  return results::GroupRow{group->name, asked != nullptr};
 }
 
 void resume(const results::SessionRow& earlier, const protocols::Protocol& protocol,
@@ -129,13 +167,18 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
     if (earlier) {
       check_keeps_order(request, *earlier);
     }
+    const protocols::Group* const asked = asked_group(request, protocol);
     const auto place = store.place_of(
         plan.participant_id, plan.mode,
         {[&](const std::string& id) { return is_in_session(store.directory(), id); },
-         [&](const std::string& id) { return !trials_done(protocol, id, store).are_all(); }});
+         [&](const std::string& id) { return !trials_done(protocol, id, store).are_all(); }},
+        [&](int order_index) {
+          return asked == nullptr || protocols::group_of(protocol, order_index) == asked;
+        });
     plan.participant_index = place.participant_index;
     plan.order_index =
         earlier ? place.order_index : request.order_index.value_or(place.order_index);
+    plan.group = earlier ? earlier->group : group_row(protocol, plan.order_index, asked);
     plan.language = request.language;
     plan.seed = earlier ? earlier->seed : request.seed ? *request.seed : drawn_seed();
     session.schedule =
@@ -155,6 +198,7 @@ namespace {
 void check(const LiveSession& live) {
   check_has_blocks(live.protocol);
   check_participant_id(live.request.participant_id);
+  static_cast<void>(asked_group(live.request, live.protocol));
   check_fits(live.protocol, live.rig);
   if (live.console) {
     check_can_listen(live.console->address);
@@ -181,6 +225,10 @@ SessionRequest request_of(const LiveSession& live) {
 }
 
 void say_what_was_found(const BegunSession& session) {
+  if (const auto& group = session.row.group) {
+    say("participant {} is in group {} ({})\n", session.row.participant_id, group->name,
+        group->is_given ? "given by the operator" : "assigned by the study's counterbalancing");
+  }
   if (session.resumed_since_utc.empty()) {
     return;
   }

@@ -33,6 +33,7 @@ struct SessionRequest {
   std::optional<std::uint64_t> seed;  // of a new session; drawn if unset
   std::optional<int> order_index;     // of a new participant; the first free one if unset
   std::string language{"en"};         // of what the participant reads
+  std::string group{};  // of a new participant; empty: that of the participant's order index
 };
 
 struct BegunSession {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 
 #include "protocols/axes/axis.hpp"
 #include "protocols/protocol.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "runner/session/devices/masking_card.hpp"
@@ -26,14 +28,63 @@ using core::operator""_source;
 using protocols::Block;
 using protocols::Protocol;
 namespace {
-// Only whole sets of orders are balanced.
-CitingText describe_williams_orders(int of_orders, std::size_t participants) {
-  const auto orders = static_cast<std::size_t>(of_orders);
-  return participants % orders == 0
-             ? citing(", in orders balanced for immediate sequence over participants ({})",
+// The participants of a group, or all where there are none (nullptr).
+struct GroupMembers {
+  const protocols::Group* group{};
+  std::set<std::string> participants;
+};
+
+std::vector<GroupMembers> members_of_groups(const Protocol& protocol,
+                                            const std::vector<results::SessionRow>& sessions,
+                                            const std::set<std::string>& participants) {
+  std::vector<GroupMembers> all;
+  for (const protocols::Group* const group : protocols::groups_of(protocol)) {
+    all.push_back({group, group == nullptr ? participants : std::set<std::string>{}});
+    for (const results::SessionRow& session : sessions) {
+      if (group != nullptr && session.group && session.group->name == group->name &&
+          participants.contains(session.participant_id)) {
+        all.back().participants.insert(session.participant_id);
+      }
+    }
+  }
+  return all;
+}
+
+// Of each group that does the block, as many participants as it has.
+std::vector<std::size_t> asked_of(const Block& block, const std::vector<GroupMembers>& groups) {
+  std::vector<std::size_t> counts;
+  for (const GroupMembers& members : groups) {
+    if (protocols::does(members.group, block)) {
+      counts.push_back(members.participants.size());
+    }
+  }
+  return counts;
+}
+
+std::size_t sum(const std::vector<std::size_t>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+}
+
+// Orders that so many participants of a group were dealt.
+struct DealtOrders {
+  int orders{};
+  std::size_t participants{};
+};
+
+// Only whole sets of orders are balanced, in each group.
+CitingText describe_williams_orders(const std::vector<DealtOrders>& groups) {
+  const auto is_incomplete = [](const DealtOrders& dealt) {
+    return dealt.participants % static_cast<std::size_t>(dealt.orders) != 0;
+  };
+  const auto broken = std::ranges::find_if(groups, is_incomplete);
+  const char* const whose = groups.size() > 1 ? " of a group" : "";
+  return broken == groups.end()
+             ? citing(", in orders balanced for immediate sequence over participants{} ({})", whose,
                       "Williams 1949"_source)
-             : citing(", in orders of a balanced design ({}) that {} do not complete, of {} orders",
-                      "Williams 1949"_source, counted(participants, "participant"), orders);
+             : citing(
+                   ", in orders of a balanced design ({}) that {}{} do not complete, of {} orders",
+                   "Williams 1949"_source, counted(broken->participants, "participant"), whose,
+                   broken->orders);
 }
 
 // " with no stimulus twice in a row"; "" without constraints.
@@ -53,7 +104,7 @@ std::string describe_constraints(const protocols::OrderConstraints& constraints)
 }
 
 // ", in random order"; "" where the block's task has an order of its own.
-CitingText describe_order(const Block& block, std::size_t participants) {
+CitingText describe_order(const Block& block, const std::vector<std::size_t>& asked) {
   if (!block.task->uses_order()) {
     return "";
   }
@@ -65,9 +116,14 @@ CitingText describe_order(const Block& block, std::size_t participants) {
     case protocols::Order::shuffle_within_repetition:
       return ", in an order that was random within each repetition" +
              describe_constraints(block.constraints);
-    case protocols::Order::williams:
-      return describe_williams_orders(
-          protocols::williams_rows(static_cast<int>(protocols::conditions(block))), participants);
+    case protocols::Order::williams: {
+      const int orders = protocols::williams_rows(static_cast<int>(protocols::conditions(block)));
+      std::vector<DealtOrders> dealt;
+      std::ranges::transform(asked, std::back_inserter(dealt), [&](std::size_t participants) {
+        return DealtOrders{orders, participants};
+      });
+      return describe_williams_orders(dealt);
+    }
   }
   return "";
 }
@@ -75,17 +131,21 @@ CitingText describe_order(const Block& block, std::size_t participants) {
 // "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
 // blocks: their descriptions.
 CitingText describe_sequence(const Protocol& protocol, const std::string& who,
-                             const std::vector<CitingText>& blocks, std::size_t participants) {
+                             const std::vector<CitingText>& blocks,
+                             const std::vector<GroupMembers>& groups) {
   const protocols::BlockOrder& order = protocol.block_order;
   if (order.order == protocols::Order::listed) {
     return citing("{} did {}. ", who, core::joined(blocks, ", then "));
   }
-  return citing(
-      "{} did {}, where '{}' exchanged their places among participants{}. ", who,
-      core::joined(blocks, ", then "), fmt::join(order.blocks, "', '"),
-      order.order == protocols::Order::shuffle
-          ? CitingText{", in random order"}
-          : describe_williams_orders(protocols::balanced_block_orders(protocol), participants));
+  std::vector<DealtOrders> dealt;
+  std::ranges::transform(groups, std::back_inserter(dealt), [&](const GroupMembers& members) {
+    return DealtOrders{protocols::balanced_block_orders(protocol, members.group),
+                       members.participants.size()};
+  });
+  return citing("{} did {}, where '{}' exchanged their places among participants{}. ", who,
+                core::joined(blocks, ", then "), fmt::join(order.blocks, "', '"),
+                order.order == protocols::Order::shuffle ? CitingText{", in random order"}
+                                                         : describe_williams_orders(dealt));
 }
 
 std::string apparatus(const std::vector<results::SessionRow>& sessions) {
@@ -176,8 +236,9 @@ std::string describe_completion(const Block& block, const results::BlockCourseRo
   return words;
 }
 
+// asked: as many participants of each group that does it.
 CitingText describe_block(const Block& block, const results::BlockCourseRow& done,
-                          std::size_t participants) {
+                          const std::vector<std::size_t>& asked) {
   const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
   return citing(
       "'{}' ({} of {}{}, {}{}{}{}{}{}{}{}{})", block.name, block.task->name(),
@@ -187,8 +248,8 @@ CitingText describe_block(const Block& block, const results::BlockCourseRow& don
       block.catch_trials ? fmt::format(", {} of them catch trials", block.catch_trials->count) : "",
       block.confidence ? fmt::format(", each with confidence in {} steps", block.confidence->steps)
                        : "",
-      describe_order(block, participants), describe_levels(block), describe_taps(block),
-      describe_practice(block), describe_completion(block, done, participants));
+      describe_order(block, asked), describe_levels(block), describe_taps(block),
+      describe_practice(block), describe_completion(block, done, sum(asked)));
 }
 
 // Letters that stand for something else in each trial, and are what is answered.
@@ -296,6 +357,32 @@ CitingText questionnaires(const Protocol& protocol, const DoneBlocks& done) {
   return forms.empty() ? "" : citing("Questionnaires: {}. ", core::joined(forms, "; "));
 }
 
+// "" where the protocol has none. Of excluded participants nothing is said.
+CitingText describe_groups(const std::vector<GroupMembers>& groups,
+                           const std::vector<results::SessionRow>& sessions) {
+  if (groups.front().group == nullptr) {
+    return "";
+  }
+  std::vector<std::string> described;
+  std::set<std::string> given;
+  for (const GroupMembers& members : groups) {
+    described.push_back(fmt::format("'{}' (n = {}) did '{}'", members.group->label,
+                                    members.participants.size(),
+                                    fmt::join(members.group->blocks, "', '")));
+    for (const results::SessionRow& session : sessions) {
+      if (session.group && session.group->is_given &&
+          members.participants.contains(session.participant_id)) {
+        given.insert(session.participant_id);
+      }
+    }
+  }
+  return citing("Groups: {}. Participants were assigned by permuted blocks of {} ({}){}. ",
+                fmt::join(described, "; "), groups.size(), "Schulz & Grimes 2002"_source,
+                given.empty()
+                    ? ""
+                    : fmt::format("; the operator chose the group of {} of them", given.size()));
+}
+
 // Blocks that no participant started.
 std::string unstarted_blocks(const Protocol& protocol, const DoneBlocks& done) {
   std::vector<std::string> names;
@@ -312,19 +399,21 @@ core::CitingText describe_procedure(const Protocol& protocol,
                                     const std::vector<results::SessionRow>& sessions,
                                     const std::set<std::string>& participants,
                                     const DoneBlocks& done) {
+  const std::vector<GroupMembers> groups = members_of_groups(protocol, sessions, participants);
   std::vector<CitingText> blocks;
   bool is_by_all = true;
   for (const Block& block : protocol.blocks) {
     const auto row = done.find(block.name);
     if (row != done.end()) {
-      blocks.push_back(describe_block(block, row->second, participants.size()));
+      blocks.push_back(describe_block(block, row->second, asked_of(block, groups)));
       is_by_all = is_by_all && row->second.participants.size() == participants.size();
     }
   }
   const bool are_people = sessions.front().mode != results::Mode::simulated;
   CitingText text = apparatus(sessions) + rendering(protocol, done);
-  text += describe_sequence(protocol, is_by_all ? "Each participant" : "Participants", blocks,
-                            participants.size());
+  text += describe_groups(groups, sessions);
+  text +=
+      describe_sequence(protocol, is_by_all ? "Each participant" : "Participants", blocks, groups);
   text += unstarted_blocks(protocol, done);
   text += explorations(protocol, done);
   if (are_people) {

@@ -18,6 +18,7 @@
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
 #include "device/device.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "results/store/recorder.hpp"
 #include "results/store/store.hpp"
@@ -65,6 +66,9 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
     const auto place = store.place_of(plan.participant_id, plan.mode, {all_of_them, all_of_them});
     plan.participant_index = place.participant_index;
     plan.order_index = place.order_index;
+    if (const protocols::Group* const group = group_of(protocol, place.order_index)) {
+      plan.group = results::GroupRow{group->name};
+    }
     if (store.has_sessions(plan.participant_id)) {
       throw core::InvalidInput{
           fmt::format("{}: participant '{}' is in this study already (choose "

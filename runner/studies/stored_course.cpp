@@ -6,10 +6,12 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "runner/session/engine/alternative_rows.hpp"
 #include "runner/session/engine/session_states.hpp"
@@ -117,6 +119,34 @@ void check_trials(Store& store, const Protocol& protocol, CheckedCourse& course)
                                              row.integer(0), names, row.integer(1)));
         }
       });
+}
+
+// A group follows from the participant's place among the orders, who gave it whatever.
+void check_groups(Store& store, const Protocol& protocol, CheckedCourse& course) {
+  std::set<std::string> seen;
+  for (const results::SessionRow& session : store.sessions()) {
+    const protocols::Group* const group = protocols::group_of(protocol, session.order_index);
+    const std::string stored = session.group ? session.group->name : "";
+    if ((group == nullptr ? "" : group->name) != stored &&
+        seen.insert(session.participant_id).second) {
+      course.wrong.push_back(fmt::format(
+          "participant {}: is stored in {}, order_index {} is of {}",
+          quoted_name(session.participant_id),
+          stored.empty() ? "no group" : "group " + quoted_name(stored), session.order_index,
+          group == nullptr ? "no group" : "group " + quoted_name(group->name)));
+    }
+    if (group == nullptr) {
+      continue;
+    }
+    std::set<std::string> planned;
+    for (const auto& [block, number] : protocols::first_trials(session.planned_order)) {
+      planned.insert(block);
+    }
+    if (planned != std::set<std::string>(group->blocks.begin(), group->blocks.end())) {
+      course.wrong.push_back(fmt::format("session {}: its order has not the blocks of group {}",
+                                         session.id, quoted_name(group->name)));
+    }
+  }
 }
 
 std::optional<SessionState> state_named(const std::string& text) {
@@ -227,6 +257,7 @@ void check_actions(Store& store, CheckedCourse& course) {
 
 CheckedCourse checked_course(Store& store, const Protocol& protocol) {
   CheckedCourse course;
+  check_groups(store, protocol, course);
   check_trials(store, protocol, course);
   check_states(store, course);
   check_actions(store, course);

@@ -7,7 +7,8 @@
 namespace tapstudy::runner {
 // What is stored of the course of a study's sessions, held against what a session can be.
 struct CheckedCourse {
-  // Trials that are not those of their session's order (block, practice, what they present),
+  // Groups that are not those of their participants' order indices, trials that are not those of
+  // their session's order (block, practice, what they present),
   // changes of state that no session makes, actions that no operator has; a sentence each.
   std::vector<std::string> wrong;
   // Sessions that were neither ended nor stopped: a program that was killed leaves one.

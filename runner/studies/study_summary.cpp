@@ -14,6 +14,7 @@
 #include "analysis/report/comparison.hpp"
 #include "analysis/report/study/confidence.hpp"
 #include "analysis/report/study/course.hpp"
+#include "analysis/report/study/groups.hpp"
 #include "analysis/report/study/rendered.hpp"
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
@@ -21,6 +22,7 @@
 #include "core/text/plain_text.hpp"
 #include "protocols/axes/axis.hpp"
 #include "protocols/schedule/catch_trials.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "results/store/study_queries.hpp"
@@ -83,20 +85,23 @@ analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
                                         std::size_t block_index) {
   const protocols::Block& block = protocol.blocks[block_index];
   const std::uint64_t study_seed = protocol.counterbalancing_seed;
-  return [block, block_index, study_seed](const analysis::Place& place, std::uint64_t draw) {
-    const std::uint64_t seed = core::derived_seed(
-        draw, core::Purpose::participant, static_cast<std::uint64_t>(place.participant_index));
-    protocols::Draw redrawn = protocols::draw_of(study_seed, block_index, seed, place.order_index);
-    redrawn.counterbalancing_seed = draw;
-    std::vector<int> stimuli;
-    for (const auto& next : protocols::ordered_conditions(block, redrawn)) {
-      stimuli.push_back(static_cast<int>(protocols::stimulus_of(block, next.condition)));
-    }
-    for (const std::size_t at : protocols::catch_places(block, redrawn, stimuli.size())) {
-      stimuli.insert(stimuli.begin() + static_cast<std::ptrdiff_t>(at), not_counted);
-    }
-    return stimuli;
-  };
+  const std::size_t groups = protocol.groups.size();
+  return
+      [block, block_index, study_seed, groups](const analysis::Place& place, std::uint64_t draw) {
+        const std::uint64_t seed = core::derived_seed(
+            draw, core::Purpose::participant, static_cast<std::uint64_t>(place.participant_index));
+        protocols::Draw redrawn = protocols::draw_of(
+            study_seed, block_index, seed, protocols::index_in_group(groups, place.order_index));
+        redrawn.counterbalancing_seed = draw;
+        std::vector<int> stimuli;
+        for (const auto& next : protocols::ordered_conditions(block, redrawn)) {
+          stimuli.push_back(static_cast<int>(protocols::stimulus_of(block, next.condition)));
+        }
+        for (const std::size_t at : protocols::catch_places(block, redrawn, stimuli.size())) {
+          stimuli.insert(stimuli.begin() + static_cast<std::ptrdiff_t>(at), not_counted);
+        }
+        return stimuli;
+      };
 }
 
 // Only a random order can be drawn again.
@@ -438,13 +443,28 @@ std::vector<std::string> rendered_by_earlier_versions(
 }
 
 namespace {
+// Values of blocks are of who is reported; nobody else need be left out here.
+std::vector<analysis::ParticipantGroup> participant_groups(
+    const protocols::Protocol& protocol, const std::vector<results::SessionRow>& sessions) {
+  std::vector<analysis::ParticipantGroup> groups;
+  for (const protocols::Group& group : protocol.groups) {
+    groups.push_back({group.label, {}});
+    for (const results::SessionRow& session : sessions) {
+      if (session.group && session.group->name == group.name) {
+        groups.back().participants.insert(session.participant_id);
+      }
+    }
+  }
+  return groups;
+}
+
 // Hypotheses are adjusted for the number of all of them, so that theirs are always computed, and
-// contrasts are of all blocks. A block without answers is one that the report tells of.
+// contrasts and groups are of all blocks. A block without answers is one that the report tells of.
 void leave_out_unwanted(const Wanted& wanted, const std::vector<results::AnswerRow>& answers,
                         analysis::StudyDesign& design) {
   std::erase_if(design.blocks, [&](const analysis::BlockDesign& block) {
     return !wanted.has(block.name) && !wanted.has(analysis::study_sections::contrasts) &&
-           block.hypotheses.empty() &&
+           !wanted.has(analysis::study_sections::groups) && block.hypotheses.empty() &&
            std::ranges::find(answers, block.name, &results::AnswerRow::block) != answers.end();
   });
 }
@@ -490,6 +510,11 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     const bool is_order_fixed = protocol.block_order.order == protocols::Order::listed;
     if (auto contrasts = analysis::block_contrasts(summary.blocks, is_order_fixed)) {
       summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
+    }
+  }
+  if (wanted.has(analysis::study_sections::groups)) {
+    if (auto groups = groups_section(summary.blocks, participant_groups(protocol, all.sessions))) {
+      summary.sections.insert(summary.sections.begin(), std::move(*groups));
     }
   }
   summary.provenance = provenance(study, protocol, all.sessions);

@@ -32,6 +32,7 @@ results::SessionRow session_row(const SessionPlan& plan, const protocols::Protoc
   session.participant_index = plan.participant_index;
   session.order_index = plan.order_index;
   session.mode = plan.mode;
+  session.group = plan.group;
   session.seed = plan.seed;
   session.planned_order = protocols::described(schedule);
   session.language = plan.language;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "protocols/protocol.hpp"
@@ -21,6 +22,7 @@ struct SessionPlan {
   std::string scheduler;   // real-time facilities granted
   std::string doctor;      // diagnosis of the machine, JSON
   std::string language{};  // of what the participant reads
+  std::optional<results::GroupRow> group{};
 };
 results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,
                                 const protocols::Rig& rig, const protocols::Schedule& schedule);

@@ -54,6 +54,19 @@ void add_unplanned_blocks(Store& store, std::vector<std::string>& found) {
   }
 }
 
+void add_unknown_groups(Store& store, const Protocol& protocol, std::vector<std::string>& found) {
+  std::set<std::string> seen;
+  for (const results::SessionRow& session : store.sessions()) {
+    if (session.group && seen.insert(session.group->name).second &&
+        std::ranges::find(protocol.groups, session.group->name, &protocols::Group::name) ==
+            protocol.groups.end()) {
+      found.push_back(fmt::format("participant {} is in group {}, which the protocol lacks",
+                                  quoted_name(session.participant_id),
+                                  quoted_name(session.group->name)));
+    }
+  }
+}
+
 void add_unknown_stimuli(Store& store, const Protocol& protocol, std::vector<std::string>& found) {
   store.each_row(
       "SELECT stimulus, min(trial_id) FROM alternative GROUP BY stimulus ORDER BY 2",
@@ -108,6 +121,7 @@ std::vector<std::string> unknown_names(Store& store, const Protocol& protocol) {
   std::vector<std::string> found;
   add_unknown_blocks(store, protocol, found);
   add_unplanned_blocks(store, found);
+  add_unknown_groups(store, protocol, found);
   add_unknown_stimuli(store, protocol, found);
   add_unknown_items(store, protocol, found);
   return found;

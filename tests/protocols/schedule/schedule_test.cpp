@@ -344,7 +344,7 @@ TEST_CASE(
     "[protocols][schedule]") {
   const Names blocks = GENERATE(Names{"a", "b"}, Names{"a", "b", "c"}, Names{"a", "b", "c", "d"});
   const protocols::Protocol protocol = study(blocks, "{order: williams}");
-  const int orders = protocols::balanced_block_orders(protocol);
+  const int orders = protocols::balanced_block_orders(protocol, nullptr);
   CHECK(orders == (blocks.size() % 2 == 0 ? 1 : 2) * std::ssize(blocks));
   for (const int first : {0, 5 * orders}) {
     std::map<std::pair<std::string, std::string>, int> followed;

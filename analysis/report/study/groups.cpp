@@ -1,0 +1,190 @@
+#include "analysis/report/study/groups.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+
+#include "analysis/statistics/population/independent_groups.hpp"
+#include "analysis/statistics/quantiles.hpp"
+#include "analysis/statistics/rank_tests.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr std::uint64_t groups_seed = 7;
+
+// The values of one group in a block; of a ratio their logarithms.
+struct GroupValues {
+  const ParticipantGroup* group{};
+  std::vector<double> known;
+  std::vector<Interval> all;  // with those beyond what was presented
+  int took_part{};
+};
+
+GroupValues values_of(const ParticipantGroup& group, const PersonalValues& values) {
+  GroupValues found{&group, {}, {}, 0};
+  const auto scaled = [&](double value) { return values.is_ratio ? std::log(value) : value; };
+  for (const std::string& participant : group.participants) {
+    const auto own = values.by_participant.find(participant);
+    const auto beyond = values.beyond.find(participant);
+    if (own != values.by_participant.end()) {
+      found.known.push_back(scaled(own->second));
+      found.all.push_back({found.known.back(), found.known.back()});
+    } else if (beyond != values.beyond.end()) {
+      found.all.push_back({scaled(beyond->second.low), scaled(beyond->second.high)});
+    }
+    const bool took_part = values.participants.empty()
+                               ? own != values.by_participant.end() || beyond != values.beyond.end()
+                               : values.participants.contains(participant);
+    found.took_part += took_part ? 1 : 0;
+  }
+  return found;
+}
+
+// Those of which anybody has a value.
+std::vector<GroupValues> groups_in(const BlockSummary& block,
+                                   const std::vector<ParticipantGroup>& groups) {
+  std::vector<GroupValues> found;
+  for (const ParticipantGroup& group : groups) {
+    GroupValues values = values_of(group, *block.personal);
+    if (!values.all.empty()) {
+      found.push_back(std::move(values));
+    }
+  }
+  return found;
+}
+
+struct Contrast {
+  const BlockSummary* block;
+  GroupValues first;
+  GroupValues second;
+  GroupContrast result;  // without a difference where values lie beyond what was presented
+};
+
+Contrast contrast_of(const BlockSummary& block, const GroupValues& first,
+                     const GroupValues& second) {
+  Contrast contrast{&block, first, second, {}};
+  if (first.known.size() == first.all.size() && second.known.size() == second.all.size()) {
+    contrast.result = group_contrast(first.known, second.known, groups_seed);
+    return contrast;
+  }
+  const GroupScores scores = gehan_scores(first.all, second.all);
+  contrast.result = {std::numeric_limits<double>::quiet_NaN(), std::nullopt,
+                     group_permutation_test(scores.first, scores.second, groups_seed)};
+  return contrast;
+}
+
+Cell people(const GroupValues& values) {
+  Cell cell = count(std::ssize(values.all));
+  cell.values.emplace_back(static_cast<std::int64_t>(values.took_part));
+  if (std::ssize(values.all) < values.took_part) {
+    cell.text = fmt::format("{} of {}", values.all.size(), values.took_part);
+  }
+  return cell;
+}
+
+Column people_column(const std::string& heading, const std::string& key) {
+  return {heading, {key, key + "_of"}};
+}
+
+// The mean of those whose value is known, with the standard deviation; "–" where one is not.
+std::vector<Cell> mean_cells(const GroupValues& values, bool is_ratio) {
+  if (values.known.size() < values.all.size()) {
+    return {number(std::nullopt), number(std::nullopt)};
+  }
+  const MeanAndSpread of = mean_and_spread(values.known);
+  const bool has_spread = values.known.size() > 1;
+  const double spread = is_ratio ? std::exp(of.standard_deviation) : of.standard_deviation;
+  return {number(is_ratio ? std::exp(of.mean) : of.mean),
+          number(has_spread ? std::optional{spread} : std::nullopt)};
+}
+
+Cell compared(const Contrast& contrast) {
+  const GroupContrast& result = contrast.result;
+  if (!contrast.block->personal->is_ratio) {
+    return interval(result.difference, result.interval);
+  }
+  const auto range =
+      result.interval
+          ? std::optional{Interval{std::exp(result.interval->low), std::exp(result.interval->high)}}
+          : std::nullopt;
+  return interval(std::exp(result.difference), range);
+}
+
+void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts,
+              ReportTable& table) {
+  std::vector<double> p;
+  std::ranges::transform(contrasts, std::back_inserter(p),
+                         [](const Contrast& contrast) { return contrast.result.test.p; });
+  const std::vector<double> adjusted = holm_adjusted(p);
+  for (std::size_t i = 0; i < contrasts.size(); ++i) {
+    const Contrast& one = contrasts[i];
+    table.rows.push_back({word(measure), word(one.block->block), word(one.first.group->label),
+                          word(one.second.group->label), compared(one), people(one.first),
+                          people(one.second), probability(p[i]), probability(adjusted[i])});
+  }
+}
+
+ReportTable empty_table(const std::string& name, const std::string& title, const Column& compared) {
+  return {name,
+          title,
+          {column("of", "measure"), column("block", "block"), column("first", "first"),
+           column("second", "second"), compared,
+           people_column("participants, first", "participants_first"),
+           people_column("second", "participants_second"), column("permutation", "p"),
+           column("after Holm", "p_holm")}};
+}
+
+CitingText how_it_was_computed() {
+  return core::citing(
+      "Of different people: participants' values, each counting the same; of ratios geometric "
+      "means "
+      "and standard deviations. Differences have {}'s interval, ratios that of the logarithms. "
+      "Two-sided permutation test: participants change groups, by Welch's t (all assignments up to "
+      "20000, else 9999), adjusted by {} for all contrasts of a measure. Where participants lie "
+      "beyond the levels presented no mean is given, and the test takes how many of all certainly "
+      "lie below each, less how many above ({}).",
+      "Welch 1947"_source, "Holm 1979"_source, "Gehan 1965"_source);
+}
+}  // namespace
+
+std::optional<ReportSection> groups_section(
+    const std::vector<std::shared_ptr<const BlockSummary>>& blocks,
+    const std::vector<ParticipantGroup>& groups) {
+  ReportTable means{"groups",
+                    "Each group in the blocks that several did",
+                    {column("block", "block"), column("measure", "measure"),
+                     column("group", "group"), people_column("participants", "participants"),
+                     column("mean", "mean"), column("SD", "standard_deviation")}};
+  std::map<std::string, std::vector<Contrast>> contrasts;  // by measure
+  for (const auto& block : blocks) {
+    const auto values = block->personal ? groups_in(*block, groups) : std::vector<GroupValues>{};
+    for (std::size_t i = 0; i < values.size() && values.size() > 1; ++i) {
+      const std::vector<Cell> mean = mean_cells(values[i], block->personal->is_ratio);
+      means.rows.push_back({word(block->block), word(block->personal->measure),
+                            word(values[i].group->label), people(values[i]), mean[0], mean[1]});
+      for (std::size_t j = i + 1; j < values.size(); ++j) {
+        if (values[i].all.size() > 1 && values[j].all.size() > 1) {
+          contrasts[block->personal->measure].push_back(contrast_of(*block, values[i], values[j]));
+        }
+      }
+    }
+  }
+  if (means.rows.empty()) {
+    return std::nullopt;
+  }
+  ReportTable differences = empty_table("group_differences", "Differences between groups",
+                                        interval_column("first - second (95 % CI)", "difference"));
+  ReportTable ratios = empty_table("group_ratios", "Ratios between groups",
+                                   interval_column("first / second (95 % CI)", "ratio"));
+  for (const auto& [measure, found] : contrasts) {
+    add_rows(measure, found, found.front().block->personal->is_ratio ? ratios : differences);
+  }
+  ReportSection section{"Groups compared", {means, differences, ratios}};
+  section.name = study_sections::groups;
+  section.remarks.emplace_back(how_it_was_computed());
+  return section;
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,175 @@
+#include "protocols/schedule/groups.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "core/error.hpp"
+#include "protocols/schedule/ordering.hpp"
+#include "protocols/schedule/schedule.hpp"
+#include "support/blocks.hpp"
+#include "support/catch.hpp"
+using namespace tapstudy;
+
+namespace {
+using testing::Names;
+
+Names blocks_in(const protocols::Schedule& schedule) {
+  Names names;
+  for (const protocols::PlannedTrial& trial : schedule) {
+    if (names.empty() || names.back() != trial.block) {
+      names.push_back(trial.block);
+    }
+  }
+  return names;
+}
+
+// The order of the trials of one block.
+Names stimuli_of(const std::string& block, const protocols::Schedule& schedule) {
+  Names names;
+  for (const protocols::PlannedTrial& trial : schedule) {
+    if (trial.block == block) {
+      names.push_back(trial.alternatives.front().stimulus);
+    }
+  }
+  return names;
+}
+
+const Names blocks{"practice", "a", "b", "c", "test"};
+const std::string three_groups =
+    "groups:\n"
+    "  - {name: short, blocks: [practice, test]}\n"
+    "  - {name: long, label: long training}\n"
+    "  - {name: middle, blocks: [a, b, practice, test]}\n";
+}  // namespace
+
+TEST_CASE(
+    "of each run of as many participants as there are groups one is in each, whatever the seed",
+    "[protocols][groups]") {
+  const std::string seed = "counterbalancing_seed: " + std::to_string(GENERATE(0, 1, 2, 77)) + "\n";
+  const protocols::Protocol protocol = testing::with_blocks(blocks, three_groups + seed);
+  std::set<Names> orders;  // of the groups in a run
+  for (int participants = 0; participants <= 120; ++participants) {
+    const int each = participants / 3;
+    Names run;
+    for (const protocols::Group& group : protocol.groups) {
+      const int members = protocols::members(protocol, &group, participants);
+      CHECK((members == each || members == each + 1));
+    }
+    for (int i = participants; participants % 3 == 0 && i < participants + 3; ++i) {
+      run.push_back(protocols::group_of(protocol, i)->name);
+    }
+    if (!run.empty()) {
+      CHECK(std::set<std::string>(run.begin(), run.end()).size() == 3);
+      orders.insert(run);
+    }
+  }
+  CHECK(orders.size() == 6);  // nobody can tell who is next in which group
+}
+
+TEST_CASE("another counterbalancing seed assigns otherwise, a participant's own seed does not",
+          "[protocols][groups]") {
+  const auto assigned = [](const protocols::Protocol& protocol) {
+    Names names;
+    for (int i = 0; i < 30; ++i) {
+      names.push_back(protocols::group_of(protocol, i)->name);
+    }
+    return names;
+  };
+  CHECK(assigned(testing::with_blocks(blocks, three_groups)) !=
+        assigned(testing::with_blocks(blocks, three_groups + "counterbalancing_seed: 2\n")));
+  const protocols::Protocol protocol = testing::with_blocks(blocks, three_groups);
+  for (int i = 0; i < 6; ++i) {
+    CHECK(blocks_in(make_schedule(protocol, 1, i)) == blocks_in(make_schedule(protocol, 2, i)));
+  }
+}
+
+TEST_CASE("a participant does the blocks of the group, in the file's order, and no others",
+          "[protocols][groups]") {
+  const protocols::Protocol protocol = testing::with_blocks(blocks, three_groups);
+  const std::map<std::string, Names> expected{{"short", {"practice", "test"}},
+                                              {"long", blocks},
+                                              {"middle", {"practice", "a", "b", "test"}}};
+  for (int i = 0; i < 12; ++i) {
+    CHECK(blocks_in(make_schedule(protocol, 5, i)) ==
+          expected.at(protocols::group_of(protocol, i)->name));
+  }
+  CHECK(protocol.group("long").label == "long training");
+  CHECK(protocol.group("short").label == "short");
+}
+
+TEST_CASE("orders of blocks and of stimuli are balanced within each group", "[protocols][groups]") {
+  const protocols::Protocol protocol = testing::with_blocks(
+      blocks, three_groups + "block_order: {order: williams, blocks: [a, b, c]}\n");
+  CHECK(protocols::balanced_block_orders(protocol, &protocol.group("short")) == 1);
+  CHECK(protocols::balanced_block_orders(protocol, &protocol.group("middle")) == 2);
+  CHECK(protocols::balanced_block_orders(protocol, &protocol.group("long")) == 6);
+  constexpr int each = 12;  // a multiple of all these, and of the six orders of three stimuli
+  std::map<std::string, std::map<Names, int>> orders;
+  std::map<std::string, std::map<Names, int>> stimuli;
+  for (int i = 0; i < 3 * each; ++i) {
+    const auto schedule = make_schedule(protocol, 1, i);
+    const std::string group = protocols::group_of(protocol, i)->name;
+    ++orders[group][blocks_in(schedule)];
+    ++stimuli[group][stimuli_of("test", schedule)];
+  }
+  CHECK(orders["short"].size() == 1);
+  CHECK(orders["middle"].size() == 2);
+  CHECK(orders["long"].size() == 6);
+  for (const auto& [group, counts] : stimuli) {
+    CHECK(counts.size() == 6);
+  }
+  for (const auto* const all : {&orders, &stimuli}) {
+    for (const auto& [group, counts] : *all) {
+      for (const auto& [order, count] : counts) {
+        CHECK(count * std::ssize(counts) == each);
+      }
+    }
+  }
+}
+
+TEST_CASE("without groups every participant does every block, in orders by the order index",
+          "[protocols][groups]") {
+  const protocols::Protocol protocol = testing::with_blocks(blocks, "");
+  for (int i = 0; i < 6; ++i) {
+    CHECK(protocols::group_of(protocol, i) == nullptr);
+    CHECK(protocols::index_in_group(protocol, i) == i);
+    CHECK(blocks_in(make_schedule(protocol, 5, i)) == blocks);
+  }
+}
+
+TEST_CASE("groups that cannot be are refused at their place, with what is allowed",
+          "[protocols][groups]") {
+  const auto refused = [](const std::string& groups, const std::string& where,
+                          const std::string& why) {
+    INFO(groups);
+    const std::string text =
+        testing::text_with_blocks({"practice", "a", "b"}, "groups:\n" + groups);
+    const auto line = std::count(
+        text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("groups:\n")), '\n');
+    try {
+      protocols::parse_protocol(text, "study.yaml");
+      FAIL("was read");
+    } catch (const core::InvalidInput& error) {
+      const std::string said = error.what();
+      INFO(said);
+      CHECK(said.find("study.yaml:" + std::to_string(line + 1 + std::stoi(where)) + ":") !=
+            std::string::npos);
+      CHECK(said.find(why) != std::string::npos);
+      CHECK(std::count(said.begin(), said.end(), '\n') <= 1);  // one error, no follow-on ones
+    }
+  };
+  const std::string other = "  - {name: y}\n";
+  refused("  - {name: x, blocks: [a, c]}\n" + other, "1", "'c' is not a known block");
+  refused("  - {name: x, blocks: [a, a]}\n" + other, "1", "'a' is listed twice");
+  refused("  - {name: x, blocks: []}\n" + other, "1", "at least one block");
+  refused("  - {name: x, blocks: [practice]}\n" + other, "1", "practice alone");
+  refused("  - {name: x, blocks: [a]}\n  - {name: y, blocks: [a, practice]}\n", "1",
+          "block 'b' is in none of them");
+  refused(other + "  - {name: y, blocks: [a]}\n", "2", "'y' is the name of an earlier group");
+  refused("  - {name: x}\n", "1", "must be two or more");
+  refused("  []\n", "1", "must be two or more");
+  refused("  - {name: x y}\n" + other, "1", "name");
+  refused("  - {blocks: [a]}\n" + other, "1", "name");
+}

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <variant>
@@ -167,6 +168,12 @@ Eigen::Isometry3d read_pose(MapReader& reader) {
   return pose;
 }
 
+// A command line that may cure a surface's fault.
+std::string repair_command(const std::string& file, double metres_per_unit) {
+  return fmt::format("tapstudy repair {} --metres-per-unit {} --out {}_repaired.ply", file,
+                     metres_per_unit, std::filesystem::path{file}.stem().string());
+}
+
 // Problems of the surface itself are reported at its key; reading then continues.
 core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Protocol& protocol) {
   core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // placeholder until read
@@ -191,6 +198,9 @@ core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Prot
                 }
                 check_surface(surface);
                 shape = core::Solid{std::move(surface)};
+              } catch (const SurfaceFault& fault) {
+                reader.reject("file", fmt::format("{}; try: {}", fault.what(),
+                                                  repair_command(file, metres_per_unit)));
               } catch (const core::InvalidInput& error) {
                 reader.reject("file", error.what());
               }

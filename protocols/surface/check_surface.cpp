@@ -17,6 +17,7 @@
 
 #include "core/error.hpp"
 #include "core/model/shape/shape.hpp"
+#include "protocols/surface/flat_triangle.hpp"
 namespace tapstudy::protocols {
 namespace {
 namespace pmp = CGAL::Polygon_mesh_processing;
@@ -26,10 +27,7 @@ using core::Vec3;
 using Mesh = CGAL::Surface_mesh<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3>;
 constexpr double min_size_m = 1e-3;
 constexpr double max_size_m = 10.0;
-constexpr double no_area = 1e-12;  // of a triangle, as a fraction of its longest side squared
-constexpr double flat_cap = 1e-5;  // height over longest side, as rounding to float gives
-constexpr double flat_cap_of_side = 1e-2;  // height over shortest side
-constexpr double no_volume = 1e-9;         // as a fraction of the bounding cube's
+constexpr double no_volume = 1e-9;  // as a fraction of the bounding cube's
 
 std::string place(const TriangleSurface& surface, int point) {
   const auto p = surface.points_m.row(point);
@@ -53,21 +51,14 @@ void check_areas(const TriangleSurface& surface) {
     const auto corner = [&](Eigen::Index k) -> Vec3 {
       return surface.points_m.row(surface.triangles(i, k));
     };
-    const Vec3 ab = corner(1) - corner(0);
-    const Vec3 ac = corner(2) - corner(0);
-    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    if (!(ab.cross(ac).norm() > no_area * longest)) {
-      throw InvalidInput{fmt::format("surface: triangle {} at {} has no area", i,
+    if (has_no_area(corner(0), corner(1), corner(2))) {
+      throw SurfaceFault{fmt::format("surface: triangle {} at {} has no area", i,
                                      place(surface, surface.triangles(i, 0)))};
     }
-    // of a needle, by contrast, the shortest side is as short as it is high
-    const double shortest = std::min({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    const double height = ab.cross(ac).norm() / std::sqrt(longest);
-    if (height < flat_cap * std::sqrt(longest) && height < flat_cap_of_side * std::sqrt(shortest)) {
-      throw InvalidInput{fmt::format(
-          "surface: triangle {} at {} is flat: a corner lies on the opposite side (repair the "
-          "surface: move that corner, or swap the side)",
-          i, place(surface, surface.triangles(i, 0)))};
+    if (is_flat_cap(corner(0), corner(1), corner(2))) {
+      throw SurfaceFault{
+          fmt::format("surface: triangle {} at {} is flat: a corner lies on the opposite side", i,
+                      place(surface, surface.triangles(i, 0)))};
     }
   }
 }
@@ -95,12 +86,12 @@ void check_edges(const TriangleSurface& surface,
     const std::string where = fmt::format("along the edge from {} to {}",
                                           place(surface, edge.first), place(surface, edge.second));
     if (triangles.size() + back == 1) {
-      throw InvalidInput{"surface: it is open (has a hole) " + where};
+      throw SurfaceFault{"surface: it is open (has a hole) " + where};
     }
     if (triangles.size() + back == 2) {
-      throw InvalidInput{"surface: two neighbouring triangles face opposite ways " + where};
+      throw SurfaceFault{"surface: two neighbouring triangles face opposite ways " + where};
     }
-    throw InvalidInput{
+    throw SurfaceFault{
         fmt::format("surface: {} triangles meet (two may) {}", triangles.size() + back, where)};
   }
 }
@@ -113,7 +104,7 @@ Mesh mesh_of(const TriangleSurface& surface) {
   for (const auto& t : surface.triangles.rowwise()) {
     const auto corner = [&](int k) { return Mesh::Vertex_index(static_cast<unsigned>(t[k])); };
     if (mesh.add_face(corner(0), corner(1), corner(2)) == Mesh::null_face()) {
-      throw InvalidInput{fmt::format(
+      throw SurfaceFault{fmt::format(
           "surface: parts of it meet in a single point only, at {} (a body is one closed shell)",
           place(surface, t[0]))};
     }
@@ -129,7 +120,7 @@ void check_one_piece(const TriangleSurface& surface, const Mesh& mesh) {
     return;
   }
   const auto other = std::ranges::find_if(piece, [](std::size_t number) { return number != 0; });
-  throw InvalidInput{fmt::format(
+  throw SurfaceFault{fmt::format(
       "surface: it is in several pieces, one at {}, another at {} (a body is one closed shell)",
       place(surface, surface.triangles(0, 0)),
       place(surface, surface.triangles(other - piece.begin(), 0)))};
@@ -142,7 +133,7 @@ void check_volume(const TriangleSurface& surface, const Mesh& mesh) {
     throw InvalidInput{fmt::format("surface: it encloses no volume ({:.3g} m³)", volume)};
   }
   if (!pmp::is_outward_oriented(mesh)) {
-    throw InvalidInput{"surface: its triangles face inward (reverse the orientation of all)"};
+    throw SurfaceFault{"surface: its triangles face inward (reverse the orientation of all)"};
   }
 }
 
@@ -156,7 +147,7 @@ void check_crossings(const TriangleSurface& surface, const Mesh& mesh) {
     return place(surface, surface.triangles(static_cast<Eigen::Index>(face.idx()), 0));
   };
   const auto [one, other] = crossings.front();
-  throw InvalidInput{
+  throw SurfaceFault{
       fmt::format("surface: it runs through itself: triangle {} at {} meets triangle {} at {}",
                   one.idx(), first_corner(one), other.idx(), first_corner(other))};
 }

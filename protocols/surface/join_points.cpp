@@ -51,13 +51,13 @@ double size_of(const std::vector<Vec3>& points) {
   return points.empty() ? 0.0 : diagonal(points, all.begin(), all.end());
 }
 
-std::vector<std::size_t> without_noise(const std::vector<Vec3>& points) {
+std::vector<std::size_t> without_noise(const std::vector<Vec3>& points, double share_of_size) {
   constexpr int axes = 3;
   constexpr int most_rounds = 10 * axes;  // of points however placed; those of a body take three
   Grouped all{PointNumbers(points.size()), PointNumbers(points.size(), 0)};
   std::iota(all.listed.begin(), all.listed.end(), std::size_t{0});
   PointNumbers place = all.listed;
-  const double tolerance = noise_of_size * size_of(points);
+  const double tolerance = share_of_size * size_of(points);
   int without_change = 0;
   for (int round = 0; without_change < axes && round < most_rounds; ++round) {
     const std::size_t before = all.groups;

@@ -18,5 +18,6 @@ double size_of(const std::vector<core::Vec3>& points);
 // if all of them fit into a box with a diagonal as long as that; a longer chain of points stays as
 // it is. Points are distinct and in the order of their coordinates, so that the result does not
 // depend on the order in which a file has them.
-std::vector<std::size_t> without_noise(const std::vector<core::Vec3>& points);
+std::vector<std::size_t> without_noise(const std::vector<core::Vec3>& points,
+                                       double share_of_size = noise_of_size);
 }  // namespace tapstudy::protocols

@@ -122,8 +122,8 @@ void Command::number_within(const std::string& name, double& value, double low, 
 }
 
 void Command::file(const std::string& name, std::string& value, const std::string& ending,
-                   const std::string& help) {
-  app_->add_option(name, value, help)->check(ends_in(ending));
+                   const std::string& help, Need need) {
+  app_->add_option(name, value, help)->required(need == Need::required)->check(ends_in(ending));
 }
 
 void Command::one_of(const std::string& name, std::string& value,
@@ -246,6 +246,7 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_export(line);
   add_amend(line);
   add_redact(line);
+  add_repair(line);
   add_verify(line);
   add_modes(line);
   add_tap(line);

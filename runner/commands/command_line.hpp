@@ -42,7 +42,7 @@ class Command {
                      const std::string& help);
   // A file name that must have the given extension.
   void file(const std::string& name, std::string& value, const std::string& ending,
-            const std::string& help);
+            const std::string& help, Need need = Need::optional);
   // Required if it is positional.
   void one_of(const std::string& name, std::string& value, const std::vector<std::string>& allowed,
               const std::string& help);
@@ -85,6 +85,7 @@ void add_report(CommandParser& line);
 void add_export(CommandParser& line);
 void add_amend(CommandParser& line);
 void add_redact(CommandParser& line);
+void add_repair(CommandParser& line);
 void add_verify(CommandParser& line);
 void add_modes(CommandParser& line);
 void add_tap(CommandParser& line);

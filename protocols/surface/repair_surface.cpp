@@ -1,0 +1,275 @@
+#include "protocols/surface/repair_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/geometry/triangle_tree.hpp"
+#include "core/model/shape/shape.hpp"
+#include "protocols/surface/check_surface.hpp"
+#include "protocols/surface/flat_triangle.hpp"
+#include "protocols/surface/join_points.hpp"
+#include "protocols/surface/surface_file.hpp"
+#include "protocols/surface/wrap_surface.hpp"
+namespace tapstudy::protocols {
+namespace {
+using core::TriangleSurface;
+using core::Vec3;
+
+Vec3 corner_m(const TriangleSurface& surface, Eigen::Index triangle, Eigen::Index corner) {
+  return surface.points_m.row(surface.triangles(triangle, corner));
+}
+
+double size_m(const TriangleSurface& surface) {
+  return core::bounds(surface).size_m().norm();
+}
+
+// Why a surface is refused; empty: it is not.
+std::string fault_of(const TriangleSurface& surface) {
+  try {
+    check_surface(surface);
+    return {};
+  } catch (const SurfaceFault& fault) {
+    return fault.what();
+  }
+}
+
+// As it will be read.
+TriangleSurface reread(const TriangleSurface& surface) {
+  return read_surface(surface_source("repaired.ply", ply_text(surface)), 1.0).surface;
+}
+
+TriangleSurface with_corners_joined(TriangleSurface surface, double share, int& joined) {
+  std::vector<Vec3> points;
+  for (const auto& p : surface.points_m.rowwise()) {
+    points.emplace_back(p.transpose());
+  }
+  const std::vector<std::size_t> places = without_noise(points, share);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    joined += places[i] == i ? 0 : 1;
+  }
+  for (int& corner : surface.triangles.reshaped()) {
+    corner = static_cast<int>(places[static_cast<std::size_t>(corner)]);
+  }
+  return surface;
+}
+
+using Corner = std::array<double, 3>;
+using Triangle = std::array<Corner, 3>;
+
+// By its corners' coordinates, from the first of them on.
+Triangle directed(const TriangleSurface& surface, Eigen::Index row) {
+  Triangle triangle{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 at_m = corner_m(surface, row, static_cast<Eigen::Index>(k));
+    triangle.at(k) = {at_m.x(), at_m.y(), at_m.z()};
+  }
+  std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
+  return triangle;
+}
+
+void count_changes(const TriangleSurface& before, SurfaceRepair& repair) {
+  std::multiset<Triangle> old;
+  for (Eigen::Index i = 0; i < before.triangles.rows(); ++i) {
+    old.insert(directed(before, i));
+  }
+  const auto take = [&](const Triangle& triangle) {
+    const auto found = old.find(triangle);
+    if (found == old.end()) {
+      return false;
+    }
+    old.erase(found);
+    return true;
+  };
+  for (Eigen::Index i = 0; i < repair.surface.triangles.rows(); ++i) {
+    Triangle triangle = directed(repair.surface, i);
+    if (take(triangle)) {
+      ++repair.kept;
+      continue;
+    }
+    std::swap(triangle[1], triangle[2]);
+    ++(take(triangle) ? repair.turned : repair.added);
+  }
+  repair.dropped = static_cast<int>(old.size());
+}
+
+// Each with corners of its own, so that the tree needs no neighbours; those with an area.
+TriangleSurface parted(const TriangleSurface& surface) {
+  TriangleSurface apart;
+  apart.points_m.resize(3 * surface.triangles.rows(), 3);
+  Eigen::Index points = 0;
+  for (Eigen::Index i = 0; i < surface.triangles.rows(); ++i) {
+    const std::array<Vec3, 3> corners{corner_m(surface, i, 0), corner_m(surface, i, 1),
+                                      corner_m(surface, i, 2)};
+    if (!has_no_area(corners[0], corners[1], corners[2])) {
+      for (const Vec3& corner : corners) {
+        apart.points_m.row(points++) = corner.transpose();
+      }
+    }
+  }
+  apart.points_m.conservativeResize(points, 3);
+  apart.triangles.resize(points / 3, 3);
+  for (Eigen::Index i = 0; i < points; ++i) {
+    apart.triangles(i / 3, i % 3) = static_cast<int>(i);
+  }
+  return apart;
+}
+
+double distance_m(const core::TriangleTree& tree, const Vec3& point, double at_least_m,
+                  double at_most_m) {
+  constexpr int halvings = 40;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle_m = 0.5 * (at_least_m + at_most_m);
+    (tree.is_near(point, middle_m) ? at_most_m : at_least_m) = middle_m;
+  }
+  return at_most_m;
+}
+
+// Of points no further apart than a fiftieth of the size, corners and centres among them.
+double farthest_m(const TriangleSurface& from, const TriangleSurface& to) {
+  constexpr int most_parts = 50;
+  const core::TriangleTree tree{parted(to)};
+  const double whole_m = size_m(from) + size_m(to);
+  const double apart_m = size_m(from) / most_parts;
+  const double rounding_m = 1e-12 * whole_m;
+  double farthest = 0.0;
+  const auto visit = [&](const Vec3& point) {
+    if (!tree.is_near(point, farthest + rounding_m)) {
+      farthest = distance_m(tree, point, farthest, 2.0 * whole_m);
+    }
+  };
+  for (Eigen::Index i = 0; i < from.triangles.rows(); ++i) {
+    const Vec3 a = corner_m(from, i, 0);
+    const Vec3 ab = corner_m(from, i, 1) - a;
+    const Vec3 ac = corner_m(from, i, 2) - a;
+    const double longest_m = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    const int parts = std::clamp(static_cast<int>(std::ceil(longest_m / apart_m)), 1, most_parts);
+    for (int u = 0; u <= parts; ++u) {
+      for (int v = 0; u + v <= parts; ++v) {
+        visit(a + ab * u / parts + ac * v / parts);
+      }
+    }
+    visit(a + (ab + ac) / 3.0);
+  }
+  return farthest;
+}
+
+bool is_closed(const TriangleSurface& surface) {
+  std::map<std::pair<int, int>, int> surplus;
+  for (const auto& t : surface.triangles.rowwise()) {
+    for (int k = 0; k < 3; ++k) {
+      const int from = t[k];
+      const int to = t[(k + 1) % 3];
+      surplus[std::minmax(from, to)] += from < to ? 1 : -1;
+    }
+  }
+  return std::ranges::all_of(surplus, [](const auto& edge) { return edge.second == 0; });
+}
+
+[[noreturn]] void refuse(const std::string& fault, const SurfaceRepair& repair, double at_m) {
+  std::string advice;
+  if (repair.holes.left > 0) {
+    advice = fmt::format("--largest-hole {:.2g} fills its longest hole, or ",
+                         1.01 * repair.holes.longest_m);
+  }
+  if (fault.find("several pieces") != std::string::npos) {
+    advice = "--largest-piece keeps one, or ";
+  }
+  throw SurfaceFault{
+      fmt::format("{}, also once it is repaired; nothing is written (try: {}--wrap {:.2g}, a new "
+                  "surface around all of it that bridges this many metres)",
+                  fault, advice, at_m)};
+}
+
+// Reaches what passes check_surface, or refuses.
+void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceRepair& repair) {
+  const double hole_m = request.longest_hole_m.value_or(size_m(joined));
+  MendedSurface mended_surface = mended(joined, {hole_m, request.is_largest_piece_only});
+  repair.holes = mended_surface.holes;
+  repair.pieces_dropped = mended_surface.pieces_dropped;
+  std::string fault;
+  try {
+    repair.surface = reread(mended_surface.surface);
+    fault = fault_of(repair.surface);
+  } catch (const core::InvalidInput& error) {
+    fault = error.what();
+  }
+  if (fault.empty()) {
+    return;
+  }
+  if (!request.wrap_m) {
+    refuse(fault, repair, size_m(joined) / 50.0);
+  }
+  repair.is_wrapped = true;
+  repair.holes = {};
+  const bool has_dropped =
+      request.is_largest_piece_only && mended_surface.surface.triangles.rows() > 0;
+  repair.surface = wrapped(has_dropped ? mended_surface.surface : joined, *request.wrap_m);
+}
+
+void simplify(const RepairRequest& request, SurfaceRepair& repair) {
+  if (request.max_triangles && repair.surface.triangles.rows() > *request.max_triangles) {
+    repair.surface = simplified(repair.surface, *request.max_triangles);
+  }
+}
+}  // namespace
+
+SurfaceRepair repair_surface(const TriangleSurface& surface, const RepairRequest& request) {
+  SurfaceRepair repair;
+  TriangleSurface joined = surface;
+  if (fault_of(surface).empty()) {
+    repair.surface = surface;
+  } else {
+    joined = with_corners_joined(surface, request.join_share, repair.corners_joined);
+    close(joined, request, repair);
+  }
+  simplify(request, repair);
+  repair.surface = reread(repair.surface);
+  const std::string fault = fault_of(repair.surface);
+  if (!fault.empty()) {
+    throw SurfaceFault{fmt::format(
+        "{}, once it is {}; nothing is written (try {})", fault,
+        request.max_triangles ? "simplified" : "wrapped",
+        request.max_triangles ? "a larger --max-triangles" : "another --wrap, or --largest-piece")};
+  }
+  count_changes(joined, repair);
+  repair.area_before_m2 = area_m2(surface);
+  if (is_closed(surface)) {
+    repair.volume_before_m3 = core::volume_m3(surface);
+  }
+  repair.farthest_from_old_m = farthest_m(repair.surface, surface);
+  repair.farthest_from_new_m = farthest_m(surface, repair.surface);
+  return repair;
+}
+
+double area_m2(const TriangleSurface& surface) {
+  double area = 0.0;
+  for (Eigen::Index i = 0; i < surface.triangles.rows(); ++i) {
+    const Vec3 a = corner_m(surface, i, 0);
+    area += 0.5 * (corner_m(surface, i, 1) - a).cross(corner_m(surface, i, 2) - a).norm();
+  }
+  return area;
+}
+
+std::string ply_text(const TriangleSurface& surface) {
+  std::string text = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\n"
+      "property double z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      surface.points_m.rows(), surface.triangles.rows());
+  for (const auto& p : surface.points_m.rowwise()) {
+    text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+  }
+  for (const auto& t : surface.triangles.rowwise()) {
+    text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
+  }
+  return text;
+}
+}  // namespace tapstudy::protocols

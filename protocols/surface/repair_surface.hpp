@@ -1,0 +1,44 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "core/geometry/triangle_surface.hpp"
+#include "protocols/surface/mend_surface.hpp"
+namespace tapstudy::protocols {
+struct RepairRequest {
+  double join_share{1e-5};                 // of the size: corners no further apart are one
+  std::optional<double> longest_hole_m{};  // round its border; unset: as long as the surface's size
+  bool is_largest_piece_only{false};
+  std::optional<double> wrap_m{};      // unset: what cannot be mended is refused
+  std::optional<int> max_triangles{};  // unset: as many as it has
+};
+
+struct SurfaceRepair {
+  core::TriangleSurface surface;  // passes check_surface; as read_surface reads ply_text of it
+  int corners_joined{};
+  Holes holes{};
+  int pieces_dropped{};
+  bool is_wrapped{false};
+  // By comparison of the triangles before, once their corners were joined, with those now.
+  int kept{};
+  int turned{};
+  int dropped{};
+  int added{};
+  std::optional<double> volume_before_m3{};  // unset: it was open
+  double area_before_m2{};
+  // From sampled points of one surface to the nearest triangle of the other: the largest distance.
+  double farthest_from_old_m{};
+  double farthest_from_new_m{};
+};
+
+// What passes check_surface is returned as it is, if it has few enough triangles. All else is
+// joined and mended, wrapped where that was asked for and mending did not do, then simplified.
+// Throws SurfaceFault, with what to try, where the result would still be refused, and ModelError
+// where CGAL cannot do it.
+SurfaceRepair repair_surface(const core::TriangleSurface& surface, const RepairRequest& request);
+
+double area_m2(const core::TriangleSurface& surface);
+
+// A PLY of which read_surface makes the same surface, to the bit.
+std::string ply_text(const core::TriangleSurface& surface);
+}  // namespace tapstudy::protocols

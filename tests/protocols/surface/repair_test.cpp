@@ -1,0 +1,193 @@
+// Surfaces that enclose no body yet: what repair makes of them, and what it refuses.
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+
+#include "core/error.hpp"
+#include "core/model/shape/shape.hpp"
+#include "protocols/surface/check_surface.hpp"
+#include "protocols/surface/repair_surface.hpp"
+#include "protocols/surface/surface_file.hpp"
+#include "support/catch.hpp"
+#include "support/surfaces.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+core::TriangleSurface as_it_is_read(const core::TriangleSurface& surface) {
+  return protocols::read_surface(
+             protocols::surface_source("body.ply", protocols::ply_text(surface)), 1.0)
+      .surface;
+}
+bool are_bitwise_equal(const core::TriangleSurface& a, const core::TriangleSurface& b) {
+  return a.points_m.rows() == b.points_m.rows() && a.triangles.rows() == b.triangles.rows() &&
+         a.points_m == b.points_m && a.triangles == b.triangles;
+}
+// A frame of square cells around one that is empty: a body with a handle, of volume 8 mL.
+core::TriangleSurface frame() {
+  return as_it_is_read(
+      testing::cells_surface({0.0, 0.0, 0.0}, {0.01, 0.01, 0.01}, {3, 3, 1},
+                             [](const Eigen::Vector3i& at) { return at[0] != 1 || at[1] != 1; }));
+}
+constexpr double frame_volume_m3 = 8e-6;
+
+core::TriangleSurface cube_at(double low_m, double side_m) {
+  return testing::cells_surface(Eigen::Vector3d::Constant(low_m), Eigen::Vector3d::Constant(side_m),
+                                {1, 1, 1}, [](const Eigen::Vector3i&) { return true; });
+}
+core::TriangleSurface both_of(const core::TriangleSurface& a, const core::TriangleSurface& b) {
+  core::TriangleSurface both;
+  both.points_m.resize(a.points_m.rows() + b.points_m.rows(), 3);
+  both.points_m << a.points_m, b.points_m;
+  both.triangles.resize(a.triangles.rows() + b.triangles.rows(), 3);
+  both.triangles << a.triangles, b.triangles.array() + static_cast<int>(a.points_m.rows());
+  return both;
+}
+core::TriangleSurface without_triangles(const core::TriangleSurface& surface, int count) {
+  core::TriangleSurface open = surface;
+  open.triangles = surface.triangles.bottomRows(surface.triangles.rows() - count).eval();
+  return open;
+}
+void check_restored(const protocols::SurfaceRepair& repair) {
+  CHECK_NOTHROW(protocols::check_surface(repair.surface));
+  CHECK(are_bitwise_equal(as_it_is_read(repair.surface), repair.surface));
+  CHECK(core::volume_m3(repair.surface) == Approx(frame_volume_m3).epsilon(1e-4));
+}
+}  // namespace
+
+TEST_CASE("a surface that encloses a body is not changed by repair, to the bit",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface body = frame();
+  const protocols::SurfaceRepair repair = protocols::repair_surface(body, {.wrap_m = 0.001});
+  CHECK(are_bitwise_equal(repair.surface, body));
+  CHECK(repair.kept == body.triangles.rows());
+  CHECK(repair.turned + repair.dropped + repair.added + repair.corners_joined == 0);
+  CHECK_FALSE(repair.is_wrapped);
+  CHECK(repair.farthest_from_old_m == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("a flat hole is filled with what was cut out, and is measured",
+          "[protocols][surface][repair]") {
+  core::TriangleSurface open = frame();
+  open.triangles = open.triangles.topRows(open.triangles.rows() - 1).eval();
+  const Eigen::RowVector3i lost = frame().triangles.bottomRows(1);
+  double around_m = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    around_m += (open.points_m.row(lost[k]) - open.points_m.row(lost[(k + 1) % 3])).norm();
+  }
+  const protocols::SurfaceRepair repair = protocols::repair_surface(open, {});
+  check_restored(repair);
+  CHECK(repair.holes.filled == 1);
+  CHECK(repair.holes.longest_m == Approx(around_m));
+  CHECK(repair.added == 1);
+  CHECK_FALSE(repair.volume_before_m3);
+  CHECK(repair.surface.triangles == frame().triangles);
+}
+
+TEST_CASE("filling a hole moves the volume by less than the hole's hull holds",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface body = frame();
+  const int cut = GENERATE(2, 5);
+  const core::TriangleSurface open = without_triangles(body, cut);
+  const protocols::SurfaceRepair repair = protocols::repair_surface(open, {.longest_hole_m = 1.0});
+  CHECK_NOTHROW(protocols::check_surface(repair.surface));
+  core::Vec3 low_m = core::Vec3::Constant(1.0);
+  core::Vec3 high_m = -low_m;
+  for (const int corner : body.triangles.topRows(cut).reshaped()) {
+    low_m = low_m.cwiseMin(body.points_m.row(corner).transpose());
+    high_m = high_m.cwiseMax(body.points_m.row(corner).transpose());
+  }
+  CHECK(std::abs(core::volume_m3(repair.surface) - frame_volume_m3) <=
+        (high_m - low_m).prod() + 1e-15);
+}
+
+TEST_CASE("triangles that face the wrong way are turned outward", "[protocols][surface][repair]") {
+  core::TriangleSurface turned = frame();
+  const bool is_whole = GENERATE(true, false);
+  const Eigen::Index count = is_whole ? turned.triangles.rows() : 3;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    std::swap(turned.triangles(i, 1), turned.triangles(i, 2));
+  }
+  const protocols::SurfaceRepair repair = protocols::repair_surface(turned, {});
+  check_restored(repair);
+  CHECK(repair.turned == count);
+  CHECK(repair.added + repair.dropped == 0);
+}
+
+TEST_CASE("a corner that stands apart within the stated share of the size is joined",
+          "[protocols][surface][repair]") {
+  core::TriangleSurface split = frame();
+  const double size_m = core::bounds(split).size_m().norm();
+  split.points_m.conservativeResize(split.points_m.rows() + 1, 3);
+  split.points_m.bottomRows(1) =
+      split.points_m.row(0) + Eigen::RowVector3d{4e-6 * size_m, 0.0, 0.0};
+  split.triangles(0, 0) = static_cast<int>(split.points_m.rows()) - 1;
+  const core::TriangleSurface read = as_it_is_read(split);
+  REQUIRE_THROWS(protocols::check_surface(read));
+  const protocols::SurfaceRepair repair = protocols::repair_surface(read, {});
+  check_restored(repair);
+  CHECK(repair.corners_joined == 1);
+  CHECK(repair.holes.filled == 0);
+}
+
+TEST_CASE("a triangle whose corner lies on its opposite side is replaced",
+          "[protocols][surface][repair]") {
+  core::TriangleSurface capped = frame();
+  // a side's middle, belonging to one of its two triangles only, and a triangle without area
+  // between
+  const Eigen::RowVector3i t = capped.triangles.row(0);
+  const int middle = static_cast<int>(capped.points_m.rows());
+  capped.points_m.conservativeResize(middle + 1, 3);
+  capped.points_m.row(middle) = 0.5 * (capped.points_m.row(t[0]) + capped.points_m.row(t[1]));
+  capped.triangles.conservativeResize(capped.triangles.rows() + 2, 3);
+  capped.triangles.row(0) << t[0], middle, t[2];
+  capped.triangles.bottomRows(2) << middle, t[1], t[2], t[0], t[1], middle;
+  const core::TriangleSurface read = as_it_is_read(capped);
+  REQUIRE_THROWS(protocols::check_surface(read));
+  const protocols::SurfaceRepair repair = protocols::repair_surface(read, {});
+  check_restored(repair);
+  CHECK(repair.surface.triangles.rows() == read.triangles.rows());
+}
+
+TEST_CASE("two bodies that cross are refused until they are wrapped, in what contains both",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface one = cube_at(0.0, 0.02);
+  const core::TriangleSurface other = cube_at(0.01, 0.02);
+  const core::TriangleSurface crossing = as_it_is_read(both_of(one, other));
+  CHECK_THROWS_WITH(protocols::repair_surface(crossing, {}), Contains("--wrap"));
+  constexpr double wrap_m = 0.002;
+  const protocols::SurfaceRepair repair = protocols::repair_surface(crossing, {.wrap_m = wrap_m});
+  CHECK(repair.is_wrapped);
+  CHECK_NOTHROW(protocols::check_surface(repair.surface));
+  const core::Bounds around = core::bounds(repair.surface);
+  CHECK((around.low_m.array() < 0.0).all());
+  CHECK((around.high_m.array() > 0.03).all());
+  constexpr double union_m3 = 2.0 * 8e-6 - 1e-6;
+  const double volume_m3 = core::volume_m3(repair.surface);
+  CHECK(volume_m3 > union_m3);
+  CHECK(volume_m3 < union_m3 + repair.area_before_m2 * wrap_m);
+  CHECK(repair.farthest_from_old_m < wrap_m);
+  CHECK(repair.farthest_from_old_m > 0.5 * wrap_m / 30.0);
+}
+
+TEST_CASE("of several pieces the largest is kept where that is asked for",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface apart = as_it_is_read(both_of(frame(), cube_at(0.1, 0.002)));
+  CHECK_THROWS_WITH(protocols::repair_surface(apart, {}), Contains("--largest-piece"));
+  const protocols::SurfaceRepair repair =
+      protocols::repair_surface(apart, {.is_largest_piece_only = true});
+  check_restored(repair);
+  CHECK(repair.pieces_dropped == 1);
+  CHECK(repair.dropped == 12);
+}
+
+TEST_CASE("a flat-sided body keeps its volume when it is simplified",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface fine =
+      as_it_is_read(testing::cells_surface({0.0, 0.0, 0.0}, {0.005, 0.005, 0.005}, {4, 4, 4},
+                                           [](const Eigen::Vector3i&) { return true; }));
+  const protocols::SurfaceRepair repair = protocols::repair_surface(fine, {.max_triangles = 40});
+  CHECK(repair.surface.triangles.rows() <= 40);
+  CHECK(core::volume_m3(repair.surface) == Approx(8e-6).epsilon(1e-6));
+  CHECK(repair.farthest_from_new_m < 1e-8);
+}

@@ -79,9 +79,7 @@ void add(const ModelCost& more, ModelCost& to) {
   to.iterate_s += more.iterate_s;
 }
 
-enum class Estimate { wanted, none };
-
-SolvedBody solve_once(const BodySpec& body, const MeshSize& size, Estimate estimate,
+SolvedBody solve_once(const BodySpec& body, const MeshSize& size, ErrorEstimation estimation,
                       const ProgressHook& progress) {
   const Material unit{1.0, 1.0, body.poissons_ratio, {}};
   std::vector<DiscreteBody> discrete{discretised(body, unit, size, {}, progress)};
@@ -92,9 +90,9 @@ SolvedBody solve_once(const BodySpec& body, const MeshSize& size, Estimate estim
   solved.modes.kappa_rad_per_m = modes.omega_rad_s;
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
   solved.modes.report = report_on(discrete, modes);
-  if (estimate == Estimate::wanted) {
-    solved.modes.estimate = estimate_error(body, unit, only, modes, progress);
-  }
+  solved.modes.estimate = estimation == ErrorEstimation::wanted
+                              ? estimate_error(body, unit, only, modes, progress)
+                              : ErrorEstimate{{}, not_asked_for, 0.0};
   solved.displacement = with_constrained_rows(modes.shapes, only.dofs);
   solved.mesh = std::move(only.mesh);
   return solved;
@@ -112,7 +110,7 @@ Eigen::ArrayXd tracked_frequencies(const BodySpec& body, const MeshSize& size,
   Eigen::ArrayXd above;
   for (int i = 0; above.size() == 0 && i < max_doublings; ++i) {
     wider.band_limit_rad_per_m *= 2.0;
-    above = solve_once(wider, size, Estimate::none, {}).modes.kappa_rad_per_m;
+    above = solve_once(wider, size, ErrorEstimation::none, {}).modes.kappa_rad_per_m;
   }
   return above.head(std::min<Eigen::Index>(above.size(), 1));
 }
@@ -219,7 +217,7 @@ SolvedBody refine(BodySpec body, const ProgressHook& progress) {
   while (rounds.size() < max_rounds && dofs <= finer * max_chosen_dofs &&
          (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
     size.max_tet_volume_m3 = volume_m3;
-    SolvedBody solved = solve_once(body, size, Estimate::wanted, progress);
+    SolvedBody solved = solve_once(body, size, ErrorEstimation::wanted, progress);
     body.mesh.order = solved.modes.report.order;  // rounds of one order, so that they compare
     const Eigen::ArrayXd after = tracked_frequencies(body, size, solved);
     dofs = solved.modes.report.dofs;
@@ -262,19 +260,19 @@ std::string content_key(const BodySpec& body) {
                      body.joints ? content_key(*body.joints) : "");
 }
 
-SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress) {
+SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress,
+                      ErrorEstimation estimation) {
   if (body.theory == Theory::beam) {
     return {{}, {}, beam_modes(body)};
   }
   try {
     if (body.joints) {
-      SolvedBody solved = solve_joined_bodies(body, progress);
+      SolvedBody solved = solve_joined_bodies(body, progress, estimation);
       keep_touchable_part(body.shape, solved);
       return solved;
     }
-    SolvedBody solved = body.mesh.accuracy
-                            ? refine(body, progress)
-                            : solve_once(body, body.mesh.size, Estimate::wanted, progress);
+    SolvedBody solved = body.mesh.accuracy ? refine(body, progress)
+                                           : solve_once(body, body.mesh.size, estimation, progress);
     keep_touchable_part(body.shape, solved);
     return solved;
   } catch (const std::bad_alloc&) {

@@ -19,6 +19,9 @@ struct ErrorEstimate {
   double seconds{};                // that this took
 };
 
+// As `not_estimated`, where nobody wanted it.
+inline constexpr const char* not_asked_for = "not asked for";
+
 // The touchable part of a body's modes: as ModalModel, for the unit material.
 struct BodyModes {
   Eigen::ArrayXd kappa_rad_per_m;  // ascending
@@ -42,7 +45,12 @@ struct SolvedBody {
   BodyModes modes;
 };
 
+// Whether the error of discretisation is estimated beside the modes, which takes about as long as
+// they do.
+enum class ErrorEstimation { none, wanted };
+
 // Mesh, matrices, modes (paper sections 4.2.1 and 4.2.2); or beam_modes.
 // Throws ModelError if the model cannot be built or the accuracy cannot be reached.
-SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress = {});
+SolvedBody solve_body(const BodySpec& body, const ProgressHook& progress = {},
+                      ErrorEstimation estimation = ErrorEstimation::none);
 }  // namespace tapstudy::core

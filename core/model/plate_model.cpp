@@ -118,10 +118,11 @@ std::string describe_error(double relative) {
                                 : fmt::format("{:.2g} %", 100.0 * relative);
 }
 
-PlateModel build_plate_model(const PlateSpec& plate, const ProgressHook& progress) {
+PlateModel build_plate_model(const PlateSpec& plate, const ProgressHook& progress,
+                             ErrorEstimation estimation) {
   check_material(plate.material);
   PlateModel built;
-  built.body = solve_body(body_of(plate), progress);
+  built.body = solve_body(body_of(plate), progress, estimation);
   built.modal = model_of(built.body.modes, plate);
   return built;
 }

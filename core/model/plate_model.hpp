@@ -35,5 +35,6 @@ struct PlateModel {
 
 // Both steps in one. Throws InvalidInput for properties out of range, ModelError if the model
 // cannot be built.
-PlateModel build_plate_model(const PlateSpec& plate, const ProgressHook& progress = {});
+PlateModel build_plate_model(const PlateSpec& plate, const ProgressHook& progress = {},
+                             ErrorEstimation estimation = ErrorEstimation::none);
 }  // namespace tapstudy::core

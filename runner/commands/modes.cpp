@@ -218,7 +218,9 @@ void run_modes(const ModesOptions& options) {
   }
   const core::PlateModel plate = [&] {
     Progress progress{fmt::format("building the model of '{}'", options.stimulus)};
-    return at_its_line(stimulus, [&] { return core::build_plate_model(spec, progress.hook()); });
+    return at_its_line(stimulus, [&] {
+      return core::build_plate_model(spec, progress.hook(), core::ErrorEstimation::wanted);
+    });
   }();
   if (!options.mesh_out.empty()) {
     core::write_tetgen_files(plate.body.mesh, options.mesh_out);

@@ -305,7 +305,8 @@ void set_energy_shares(const CoupledBodies& system, std::size_t springs, const M
 }
 }  // namespace
 
-SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progress) {
+SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progress,
+                               ErrorEstimation estimation) {
   CoupledBodies system = coupled(body, all_discretised(body, progress), *body.joints);
   const double turn = 2.0 * std::numbers::pi;
   const Modes modes = solve_modes(system.matrices, body.band_limit_rad_per_m / turn, progress);
@@ -314,7 +315,9 @@ SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progres
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
   set_energy_shares(system, body.joints->springs.size(), modes, solved.modes);
   solved.modes.report = report_on(system.bodies, modes);
-  solved.modes.estimate = estimate_error(body, system, modes, progress);
+  solved.modes.estimate = estimation == ErrorEstimation::wanted
+                              ? estimate_error(body, system, modes, progress)
+                              : ErrorEstimate{{}, not_asked_for, 0.0};
   DiscreteBody& tapped = system.bodies.front();
   solved.displacement = with_constrained_rows(modes.shapes.topRows(tapped.dofs.count), tapped.dofs);
   solved.mesh = std::move(tapped.mesh);

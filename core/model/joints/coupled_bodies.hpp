@@ -31,5 +31,6 @@ CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies, cons
 // their shapes. All bodies are one eigenproblem, not each one's modes coupled (component mode
 // synthesis, Craig & Bampton 1968): nothing is truncated, and the count of modes is proved as that
 // of a body alone. Throws ModelError as solve_body.
-SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progress);
+SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progress,
+                               ErrorEstimation estimation);
 }  // namespace tapstudy::core

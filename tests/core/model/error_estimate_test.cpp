@@ -198,7 +198,7 @@ TEST_CASE("the estimated error is within half and twice the error against a much
        5e-7}};
   for (const Body& body : bodies) {
     PlateSpec spec = body.spec();
-    const BodyModes coarse = solve_body(body_of(spec)).modes;
+    const BodyModes coarse = solve_body(body_of(spec), {}, ErrorEstimation::wanted).modes;
     spec.mesh.order = 2;
     spec.mesh.size = up_to(body.fine_tet_m3);
     const ModalModel fine = build_plate_model(spec).modal;
@@ -221,7 +221,7 @@ TEST_CASE("the estimated error is within half and twice the error against a much
 TEST_CASE("modes that a coarse mesh puts above the band are counted", "[core][model]") {
   PlateSpec plate = testing::paper_plate(4, mdf);
   plate.band_limit_hz = 270.0;
-  const PlateModel coarse = build_plate_model(plate);
+  const PlateModel coarse = build_plate_model(plate, {}, ErrorEstimation::wanted);
   CHECK(coarse.modal.frequency_hz.size() == 0);
   CHECK(frequency_errors(coarse.body.modes, mdf, 270.0).modes_at_least > 0);
 }
@@ -238,9 +238,11 @@ TEST_CASE("a weak spring to another body leaves the estimate as it is", "[core][
   spring.stiffness_n_per_m = {1.0, 1.0, 1.0};
   joined.joints = std::make_shared<const Joints>(Joints{{ballast}, {spring}});
   const Eigen::ArrayXd errors =
-      frequency_errors(solve_body(body_of(alone)).modes, mdf, 800.0).relative;
+      frequency_errors(solve_body(body_of(alone), {}, ErrorEstimation::wanted).modes, mdf, 800.0)
+          .relative;
   const Eigen::ArrayXd of_joined =
-      frequency_errors(solve_body(body_of(joined)).modes, mdf, 800.0).relative;
+      frequency_errors(solve_body(body_of(joined), {}, ErrorEstimation::wanted).modes, mdf, 800.0)
+          .relative;
   REQUIRE(errors.size() > 1);
   REQUIRE(of_joined.size() > errors.size());  // the ballast's on its spring
   CHECK(of_joined.tail(1)[0] == Approx(errors.tail(1)[0]).epsilon(0.1));
@@ -250,7 +252,7 @@ TEST_CASE("what is not estimated says why, and a stored model keeps its estimate
           "[core][model][cache]") {
   const PlateSpec cube{
       {Box{{1.0, 1.0, 1.0}}, {up_to(0.2), 2}, {clamped(Side::bottom)}}, mdf, 1000.0};
-  BodyModes modes = solve_body(body_of(cube)).modes;
+  BodyModes modes = solve_body(body_of(cube), {}, ErrorEstimation::wanted).modes;
   CHECK(modes.estimate.not_estimated.empty());
   const auto kept = decoded(encoded(modes));
   REQUIRE(kept);
@@ -268,7 +270,7 @@ TEST_CASE("each round of refining has more tetrahedra, however fine the given tr
       of(1e9, 1000.0, 0.3),
       5000.0};
   block.mesh.accuracy = 0.02;
-  const BodyModes modes = solve_body(body_of(block)).modes;
+  const BodyModes modes = solve_body(body_of(block), {}, ErrorEstimation::wanted).modes;
   const auto& rounds = modes.report.refinement;
   REQUIRE(rounds.size() >= 3);
   for (std::size_t i = 1; i < rounds.size(); ++i) {

@@ -87,7 +87,7 @@ TEST_CASE("a flat hole is filled with what was cut out, and is measured",
 TEST_CASE("filling a hole moves the volume by less than the hole's hull holds",
           "[protocols][surface][repair]") {
   const core::TriangleSurface body = frame();
-  const int cut = GENERATE(2, 5);
+  const int cut = GENERATE(3, 5);
   const core::TriangleSurface open = without_triangles(body, cut);
   const protocols::SurfaceRepair repair = protocols::repair_surface(open, {.longest_hole_m = 1.0});
   CHECK_NOTHROW(protocols::check_surface(repair.surface));
@@ -168,6 +168,13 @@ TEST_CASE("two bodies that cross are refused until they are wrapped, in what con
   CHECK(volume_m3 < union_m3 + repair.area_before_m2 * wrap_m);
   CHECK(repair.farthest_from_old_m < wrap_m);
   CHECK(repair.farthest_from_old_m > 0.5 * wrap_m / 30.0);
+}
+
+TEST_CASE("holes that touch each other in one corner are not filled but refused",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface open = without_triangles(frame(), 2);
+  CHECK_THROWS_WITH(protocols::repair_surface(open, {.longest_hole_m = 1.0}),
+                    Contains("open") && Contains("nothing is written"));
 }
 
 TEST_CASE("of several pieces the largest is kept where that is asked for",

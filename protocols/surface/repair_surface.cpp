@@ -174,14 +174,15 @@ bool is_closed(const TriangleSurface& surface) {
   return std::ranges::all_of(surplus, [](const auto& edge) { return edge.second == 0; });
 }
 
-[[noreturn]] void refuse(const std::string& fault, const SurfaceRepair& repair, double at_m) {
+[[noreturn]] void refuse(const std::string& fault, const SurfaceRepair& repair, double hole_m,
+                         double at_m) {
   std::string advice;
-  if (repair.holes.left > 0) {
+  if (repair.holes.longest_m > hole_m) {
     advice = fmt::format("--largest-hole {:.2g} fills its longest hole, or ",
                          1.01 * repair.holes.longest_m);
   }
   if (fault.find("several pieces") != std::string::npos) {
-    advice = "--largest-piece keeps one, or ";
+    advice += "--largest-piece keeps one, or ";
   }
   throw SurfaceFault{
       fmt::format("{}, also once it is repaired; nothing is written (try: {}--wrap {:.2g}, a new "
@@ -206,7 +207,7 @@ void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceR
     return;
   }
   if (!request.wrap_m) {
-    refuse(fault, repair, size_m(joined) / 50.0);
+    refuse(fault, repair, hole_m, size_m(joined) / 50.0);
   }
   repair.is_wrapped = true;
   repair.holes = {};

@@ -178,7 +178,7 @@ bool is_closed(const TriangleSurface& surface) {
                          double at_m) {
   std::string advice;
   if (repair.holes.longest_m > hole_m) {
-    advice = fmt::format("--largest-hole {:.2g} fills its longest hole, or ",
+    advice = fmt::format("--largest-hole {:.3g} fills its longest hole, or ",
                          1.01 * repair.holes.longest_m);
   }
   if (fault.find("several pieces") != std::string::npos) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <functional>
 #include <optional>
 #include <random>
 #include <utility>
@@ -108,6 +109,17 @@ const protocols::Group* asked_group(const SessionRequest& request,
   }
 }
 
+// Which order indices are of the group; without one, all.
+std::function<bool(int order_index)> orders_of(const protocols::Protocol& protocol,
+                                               const protocols::Group* asked) {
+  if (asked == nullptr) {
+    return {};
+  }
+  return [&protocol, asked](int order_index) {
+    return protocols::group_of(protocol, order_index) == asked;
+  };
+}
+
 // Of a participant with this order index, of whom there was no session before.
 std::optional<results::GroupRow> group_row(const protocols::Protocol& protocol, int order_index,
                                            const protocols::Group* asked) {
@@ -172,9 +184,7 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
         plan.participant_id, plan.mode,
         {[&](const std::string& id) { return is_in_session(store.directory(), id); },
          [&](const std::string& id) { return !trials_done(protocol, id, store).are_all(); }},
-        [&](int order_index) {
-          return asked == nullptr || protocols::group_of(protocol, order_index) == asked;
-        });
+        orders_of(protocol, asked));
     plan.participant_index = place.participant_index;
     plan.order_index =
         earlier ? place.order_index : request.order_index.value_or(place.order_index);

@@ -121,28 +121,31 @@ void check_trials(Store& store, const Protocol& protocol, CheckedCourse& course)
       });
 }
 
-// A group follows from the participant's place among the orders, who gave it whatever.
+std::string name_of_group(const std::string& group) {
+  return group.empty() ? "no group" : "group " + quoted_name(group);
+}
+
+bool has_blocks_of(const protocols::Group& group, const results::SessionRow& session) {
+  std::set<std::string> planned;
+  for (const auto& [block, number] : protocols::first_trials(session.planned_order)) {
+    planned.insert(block);
+  }
+  return planned == std::set<std::string>(group.blocks.begin(), group.blocks.end());
+}
+
+// A group follows from the participant's place among the orders, whoever assigned it.
 void check_groups(Store& store, const Protocol& protocol, CheckedCourse& course) {
   std::set<std::string> seen;
   for (const results::SessionRow& session : store.sessions()) {
     const protocols::Group* const group = protocols::group_of(protocol, session.order_index);
+    const std::string expected = group == nullptr ? "" : group->name;
     const std::string stored = session.group ? session.group->name : "";
-    if ((group == nullptr ? "" : group->name) != stored &&
-        seen.insert(session.participant_id).second) {
-      course.wrong.push_back(fmt::format(
-          "participant {}: is stored in {}, order_index {} is of {}",
-          quoted_name(session.participant_id),
-          stored.empty() ? "no group" : "group " + quoted_name(stored), session.order_index,
-          group == nullptr ? "no group" : "group " + quoted_name(group->name)));
+    if (expected != stored && seen.insert(session.participant_id).second) {
+      course.wrong.push_back(fmt::format("participant {}: is stored in {}, order_index {} is of {}",
+                                         quoted_name(session.participant_id), name_of_group(stored),
+                                         session.order_index, name_of_group(expected)));
     }
-    if (group == nullptr) {
-      continue;
-    }
-    std::set<std::string> planned;
-    for (const auto& [block, number] : protocols::first_trials(session.planned_order)) {
-      planned.insert(block);
-    }
-    if (planned != std::set<std::string>(group->blocks.begin(), group->blocks.end())) {
+    if (group != nullptr && !has_blocks_of(*group, session)) {
       course.wrong.push_back(fmt::format("session {}: its order has not the blocks of group {}",
                                          session.id, quoted_name(group->name)));
     }

@@ -191,8 +191,9 @@ const MatlabChannel& chosen_of(const std::vector<MatlabChannel>& channels,
 std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
                                   const MatlabArray& chosen, std::size_t samples,
                                   const std::string& path) {
-  std::ranges::stable_partition(
-      arrays, [&](const MatlabArray& array) { return array.structure() == chosen.structure(); });
+  std::stable_partition(arrays.begin(), arrays.end(), [&](const MatlabArray& array) {
+    return array.structure() == chosen.structure();
+  });
   constexpr std::array names{"fs", "rate", "rate_hz", "sample_rate", "sampling_rate"};
   const auto is_rate = [&](const MatlabArray& array) {
     std::string name = array.own_name();

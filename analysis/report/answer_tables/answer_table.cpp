@@ -141,34 +141,39 @@ class AnswerReader {
       return (row.cells[condition.place] == condition.value) != condition.is_excluded;
     });
   }
+  std::vector<const CsvRow*> chosen_rows() const {
+    std::vector<const CsvRow*> rows;
+    for (const CsvRow& row : std::span{csv_.text.rows}.subspan(1)) {
+      if (meets(conditions_, row)) {
+        rows.push_back(&row);
+      }
+    }
+    return rows;
+  }
   // Where a column says that some of the rows are practice, it is for the user to say whether they
   // count.
   void check_holds_no_practice() const {
+    const std::vector<const CsvRow*> rows = chosen_rows();
     for (std::size_t column = 0; column < header().size(); ++column) {
-      if (column == places_.stimulus || column == places_.response ||
-          column == places_.participant) {
-        continue;
+      if (column != places_.stimulus && column != places_.response &&
+          column != places_.participant) {
+        check_holds_no_practice(rows, column);
       }
-      const CsvRow* first = nullptr;
-      std::size_t practice = 0;
-      std::size_t all = 0;
-      for (const CsvRow& row : std::span{csv_.text.rows}.subspan(1)) {
-        if (!meets(conditions_, row)) {
-          continue;
-        }
-        ++all;
-        if (says_practice(header()[column], row.cells[column])) {
-          first = first == nullptr ? &row : first;
-          ++practice;
-        }
-      }
-      if (first != nullptr && practice < all) {
-        refuse(first->line,
-               fmt::format("column '{0}' says '{1}': {2} of {3} rows are practice. Leave them out "
-                           "(--where '{0}!={1}', or '{0}=' and the value to be counted), or "
-                           "--count-practice",
-                           header()[column], first->cells[column], practice, all));
-      }
+    }
+  }
+  void check_holds_no_practice(const std::vector<const CsvRow*>& rows, std::size_t column) const {
+    const std::string& name = header()[column];
+    const auto is_practice = [&](const CsvRow* row) {
+      return says_practice(name, row->cells[column]);
+    };
+    const auto practice = std::ranges::count_if(rows, is_practice);
+    if (practice > 0 && practice < std::ssize(rows)) {
+      const CsvRow& first = **std::ranges::find_if(rows, is_practice);
+      refuse(first.line,
+             fmt::format("column '{0}' says '{1}': {2} of {3} rows are practice. Leave them out "
+                         "(--where '{0}!={1}', or '{0}=' and the value to be counted), or "
+                         "--count-practice",
+                         name, first.cells[column], practice, rows.size()));
     }
   }
   void add(const CsvRow& row, AnswerTable& table, std::vector<Origin>& origins) const {

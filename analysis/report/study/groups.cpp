@@ -140,13 +140,36 @@ ReportTable empty_table(const std::string& name, const std::string& title, const
 CitingText how_it_was_computed() {
   return core::citing(
       "Of different people: participants' values, each counting the same; of ratios geometric "
-      "means "
-      "and standard deviations. Differences have {}'s interval, ratios that of the logarithms. "
+      "means and standard deviations. Differences have {}'s interval, ratios that of the "
+      "logarithms. "
       "Two-sided permutation test: participants change groups, by Welch's t (all assignments up to "
       "20000, else 9999), adjusted by {} for all contrasts of a measure. Where participants lie "
       "beyond the levels presented no mean is given, and the test takes how many of all certainly "
       "lie below each, less how many above ({}).",
       "Welch 1947"_source, "Holm 1979"_source, "Gehan 1965"_source);
+}
+
+using Contrasts = std::map<std::string, std::vector<Contrast>>;  // by measure
+
+// Of each two groups of more than one participant.
+void add_contrasts(const BlockSummary& block, const std::vector<GroupValues>& values,
+                   Contrasts& contrasts) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t j = i + 1; j < values.size(); ++j) {
+      if (values[i].all.size() > 1 && values[j].all.size() > 1) {
+        contrasts[block.personal->measure].push_back(contrast_of(block, values[i], values[j]));
+      }
+    }
+  }
+}
+
+void add_means(const BlockSummary& block, const std::vector<GroupValues>& values,
+               ReportTable& means) {
+  for (const GroupValues& group : values) {
+    const std::vector<Cell> mean = mean_cells(group, block.personal->is_ratio);
+    means.rows.push_back({word(block.block), word(block.personal->measure),
+                          word(group.group->label), people(group), mean[0], mean[1]});
+  }
 }
 }  // namespace
 
@@ -158,18 +181,12 @@ std::optional<ReportSection> groups_section(
                     {column("block", "block"), column("measure", "measure"),
                      column("group", "group"), people_column("participants", "participants"),
                      column("mean", "mean"), column("SD", "standard_deviation")}};
-  std::map<std::string, std::vector<Contrast>> contrasts;  // by measure
+  Contrasts contrasts;
   for (const auto& block : blocks) {
     const auto values = block->personal ? groups_in(*block, groups) : std::vector<GroupValues>{};
-    for (std::size_t i = 0; i < values.size() && values.size() > 1; ++i) {
-      const std::vector<Cell> mean = mean_cells(values[i], block->personal->is_ratio);
-      means.rows.push_back({word(block->block), word(block->personal->measure),
-                            word(values[i].group->label), people(values[i]), mean[0], mean[1]});
-      for (std::size_t j = i + 1; j < values.size(); ++j) {
-        if (values[i].all.size() > 1 && values[j].all.size() > 1) {
-          contrasts[block->personal->measure].push_back(contrast_of(*block, values[i], values[j]));
-        }
-      }
+    if (values.size() > 1) {
+      add_means(*block, values, means);
+      add_contrasts(*block, values, contrasts);
     }
   }
   if (means.rows.empty()) {

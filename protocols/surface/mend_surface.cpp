@@ -1,6 +1,5 @@
 #include "protocols/surface/mend_surface.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "core/model/shape/shape.hpp"
+#include "protocols/surface/cgal_triangulation.hpp"  // before CGAL's other headers
 #include "protocols/surface/flat_triangle.hpp"
 #include "protocols/surface/surface_job.hpp"
 namespace tapstudy::protocols {

@@ -1,6 +1,5 @@
 #include "protocols/surface/wrap_surface.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 #include <CGAL/alpha_wrap_3.h>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "protocols/surface/cgal_triangulation.hpp"  // before CGAL's other headers
 #include "protocols/surface/surface_job.hpp"
 namespace tapstudy::protocols {
 namespace {

@@ -1,5 +1,7 @@
 #include "protocols/surface/mend_surface.hpp"
 
+#include "protocols/surface/cgal_triangulation.hpp"
+// CGAL's other headers follow, which include what that one changes.
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
@@ -17,7 +19,6 @@
 #include <vector>
 
 #include "core/model/shape/shape.hpp"
-#include "protocols/surface/cgal_triangulation.hpp"  // before CGAL's other headers
 #include "protocols/surface/flat_triangle.hpp"
 #include "protocols/surface/surface_job.hpp"
 namespace tapstudy::protocols {

@@ -1,5 +1,7 @@
 #include "protocols/surface/wrap_surface.hpp"
 
+#include "protocols/surface/cgal_triangulation.hpp"
+// CGAL's other headers follow, which include what that one changes.
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 #include <CGAL/alpha_wrap_3.h>
@@ -9,7 +11,6 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "protocols/surface/cgal_triangulation.hpp"  // before CGAL's other headers
 #include "protocols/surface/surface_job.hpp"
 namespace tapstudy::protocols {
 namespace {

@@ -105,18 +105,6 @@ std::map<std::string, std::vector<Contrast>> contrasts_of(
   return contrasts;
 }
 
-Cell compared(const Contrast& contrast) {
-  const PairedContrast& result = contrast.result;
-  if (!contrast.first->personal->is_ratio) {
-    return interval(result.mean, result.interval);
-  }
-  const auto range =
-      result.interval
-          ? std::optional{Interval{std::exp(result.interval->low), std::exp(result.interval->high)}}
-          : std::nullopt;
-  return interval(std::exp(result.mean), range);
-}
-
 Cell compared_people(const Contrast& contrast) {
   const int compared = contrast.result.participants;
   Cell cell = count(compared);
@@ -134,10 +122,11 @@ void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts
                          [](const Contrast& contrast) { return contrast.result.p; });
   const std::vector<double> adjusted = holm_adjusted(p);
   for (std::size_t i = 0; i < contrasts.size(); ++i) {
-    table.rows.push_back({word(measure), word(contrasts[i].first->block),
-                          word(contrasts[i].second->block), compared(contrasts[i]),
-                          compared_people(contrasts[i]), probability(contrasts[i].result.p),
-                          probability(adjusted[i])});
+    const Contrast& one = contrasts[i];
+    table.rows.push_back(
+        {word(measure), word(one.first->block), word(one.second->block),
+         difference_or_ratio(one.result.mean, one.result.interval, one.first->personal->is_ratio),
+         compared_people(one), probability(one.result.p), probability(adjusted[i])});
   }
 }
 

@@ -26,7 +26,7 @@ Quartiles quartiles(const std::vector<double>& values) {
   return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75)};
 }
 
-MeanAndSpread mean_and_spread(const std::vector<double>& values) {
+MeanAndSpread mean_and_spread(std::span<const double> values) {
   if (values.empty()) {
     throw core::InvalidInput{"a mean takes one value or more"};
   }

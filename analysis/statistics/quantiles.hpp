@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 namespace tapstudy::analysis {
 // A quantile by linear interpolation between order statistics (Hyndman & Fan 1996, type 7).
@@ -17,5 +18,5 @@ struct MeanAndSpread {
   double standard_deviation{};  // with n - 1; NaN of one value
 };
 // Throws InvalidInput if there are no values.
-MeanAndSpread mean_and_spread(const std::vector<double>& values);
+MeanAndSpread mean_and_spread(std::span<const double> values);
 }  // namespace tapstudy::analysis

@@ -90,9 +90,7 @@ SolvedBody solve_once(const BodySpec& body, const MeshSize& size, ErrorEstimatio
   solved.modes.kappa_rad_per_m = modes.omega_rad_s;
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
   solved.modes.report = report_on(discrete, modes);
-  solved.modes.estimate = estimation == ErrorEstimation::wanted
-                              ? estimate_error(body, unit, only, modes, progress)
-                              : ErrorEstimate{{}, not_asked_for, 0.0};
+  solved.modes.estimate = estimate_if_wanted(estimation, body, unit, only, modes, progress);
   solved.displacement = with_constrained_rows(modes.shapes, only.dofs);
   solved.mesh = std::move(only.mesh);
   return solved;

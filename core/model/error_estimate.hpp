@@ -19,4 +19,10 @@ ErrorEstimate estimate_error(const Plate& plate, const Material& material, const
 // Of joined bodies; `plate` is the one that is tapped, of unit material.
 ErrorEstimate estimate_error(const BodySpec& plate, const CoupledBodies& system, const Modes& modes,
                              const ProgressHook& progress);
+// Either of them, if it is wanted.
+template <class... Of>
+ErrorEstimate estimate_if_wanted(ErrorEstimation estimation, const Of&... of) {
+  return estimation == ErrorEstimation::wanted ? estimate_error(of...)
+                                               : ErrorEstimate{{}, not_asked_for, 0.0};
+}
 }  // namespace tapstudy::core

@@ -4,10 +4,9 @@
 
 #include "protocols/protocol.hpp"
 namespace tapstudy::protocols {
-// Permuted blocks (Schulz & Grimes 2002): of each run of as
-// many order indices as there are groups, from 0 on, every group has one, in an order that the
-// study's counterbalancing seed draws for the run. The group of an index therefore depends on
-// nothing that happens during the study.
+// Permuted blocks (Schulz & Grimes 2002): of each run of as many order indices as there are groups,
+// from 0 on, every group has one, in an order that the study's counterbalancing seed draws for the
+// run. The group of an index therefore depends on nothing that happens during the study.
 
 // nullptr: the protocol has no groups.
 const Group* group_of(const Protocol& protocol, int order_index);

@@ -120,7 +120,7 @@ void check_one_piece(const TriangleSurface& surface, const Mesh& mesh) {
     return;
   }
   const auto other = std::ranges::find_if(piece, [](std::size_t number) { return number != 0; });
-  throw SurfaceFault{fmt::format(
+  throw SeveralPieces{fmt::format(
       "surface: it is in several pieces, one at {}, another at {} (a body is one closed shell)",
       place(surface, surface.triangles(0, 0)),
       place(surface, surface.triangles(other - piece.begin(), 0)))};

@@ -7,6 +7,10 @@ class SurfaceFault : public core::InvalidInput {
  public:
   using InvalidInput::InvalidInput;
 };
+class SeveralPieces : public SurfaceFault {
+ public:
+  using SurfaceFault::SurfaceFault;
+};
 
 // Checks that a surface is a closed, consistently oriented, connected 2-manifold without
 // self-intersections: finite points, non-degenerate triangles, every edge shared by two triangles

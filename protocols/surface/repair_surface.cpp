@@ -32,13 +32,20 @@ double size_m(const TriangleSurface& surface) {
   return core::bounds(surface).size_m().norm();
 }
 
-// Why a surface is refused; empty: it is not.
-std::string fault_of(const TriangleSurface& surface) {
+struct Refusal {
+  std::string why;
+  bool is_of_pieces{false};
+};
+
+// Unset: the surface is not refused.
+std::optional<Refusal> refusal_of(const TriangleSurface& surface) {
   try {
     check_surface(surface);
-    return {};
+    return std::nullopt;
+  } catch (const SeveralPieces& fault) {
+    return Refusal{fault.what(), true};
   } catch (const SurfaceFault& fault) {
-    return fault.what();
+    return Refusal{fault.what()};
   }
 }
 
@@ -174,20 +181,20 @@ bool is_closed(const TriangleSurface& surface) {
   return std::ranges::all_of(surplus, [](const auto& edge) { return edge.second == 0; });
 }
 
-[[noreturn]] void refuse(const std::string& fault, const SurfaceRepair& repair, double hole_m,
+[[noreturn]] void refuse(const Refusal& refusal, const SurfaceRepair& repair, double hole_m,
                          double at_m) {
   std::string advice;
   if (repair.holes.longest_m > hole_m) {
     advice = fmt::format("--largest-hole {:.3g} fills its longest hole, or ",
                          1.01 * repair.holes.longest_m);
   }
-  if (fault.find("several pieces") != std::string::npos) {
+  if (refusal.is_of_pieces) {
     advice += "--largest-piece keeps one, or ";
   }
   throw SurfaceFault{
       fmt::format("{}, also once it is repaired; nothing is written (try: {}--wrap {:.2g}, a new "
                   "surface around all of it that bridges this many metres)",
-                  fault, advice, at_m)};
+                  refusal.why, advice, at_m)};
 }
 
 // Reaches what passes check_surface, or refuses.
@@ -196,18 +203,18 @@ void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceR
   MendedSurface mended_surface = mended(joined, {hole_m, request.is_largest_piece_only});
   repair.holes = mended_surface.holes;
   repair.pieces_dropped = mended_surface.pieces_dropped;
-  std::string fault;
+  std::optional<Refusal> refusal;
   try {
     repair.surface = reread(mended_surface.surface);
-    fault = fault_of(repair.surface);
+    refusal = refusal_of(repair.surface);
   } catch (const core::InvalidInput& error) {
-    fault = error.what();
+    refusal = Refusal{error.what()};
   }
-  if (fault.empty()) {
+  if (!refusal) {
     return;
   }
   if (!request.wrap_m) {
-    refuse(fault, repair, hole_m, size_m(joined) / 50.0);
+    refuse(*refusal, repair, hole_m, size_m(joined) / 50.0);
   }
   repair.is_wrapped = true;
   repair.holes = {};
@@ -226,7 +233,7 @@ void simplify(const RepairRequest& request, SurfaceRepair& repair) {
 SurfaceRepair repair_surface(const TriangleSurface& surface, const RepairRequest& request) {
   SurfaceRepair repair;
   TriangleSurface joined = surface;
-  if (fault_of(surface).empty()) {
+  if (!refusal_of(surface)) {
     repair.surface = surface;
   } else {
     joined = with_corners_joined(surface, request.join_share, repair.corners_joined);
@@ -234,10 +241,9 @@ SurfaceRepair repair_surface(const TriangleSurface& surface, const RepairRequest
   }
   simplify(request, repair);
   repair.surface = reread(repair.surface);
-  const std::string fault = fault_of(repair.surface);
-  if (!fault.empty()) {
+  if (const auto refusal = refusal_of(repair.surface)) {
     throw SurfaceFault{fmt::format(
-        "{}, once it is {}; nothing is written (try {})", fault,
+        "{}, once it is {}; nothing is written (try {})", refusal->why,
         request.max_triangles ? "simplified" : "wrapped",
         request.max_triangles ? "a larger --max-triangles" : "another --wrap, or --largest-piece")};
   }

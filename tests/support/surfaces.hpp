@@ -19,6 +19,17 @@ inline core::TriangleSurface surface_of(const std::vector<Eigen::RowVector3d>& p
   return surface;
 }
 
+// The triangles of both, each with its own points.
+inline core::TriangleSurface joined_surfaces(const core::TriangleSurface& a,
+                                             const core::TriangleSurface& b) {
+  core::TriangleSurface both;
+  both.points_m.resize(a.points_m.rows() + b.points_m.rows(), 3);
+  both.points_m << a.points_m, b.points_m;
+  both.triangles.resize(a.triangles.rows() + b.triangles.rows(), 3);
+  both.triangles << a.triangles, b.triangles.array() + static_cast<int>(a.points_m.rows());
+  return both;
+}
+
 // The outer faces of those cells of a grid that are full.
 template <class IsFull>
 core::TriangleSurface cells_surface(const Eigen::Vector3d& low, const Eigen::Vector3d& cell,

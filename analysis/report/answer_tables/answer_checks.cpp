@@ -103,9 +103,9 @@ bool says_practice(const std::string& column, const std::string& cell) {
       return is_same_word(text.substr(0, word.size()), word);
     });
   };
-  const bool is_called_so = begins_with_one_of_them(column) ||
-                            (column.size() > 3 && is_same_word(column.substr(0, 3), "is_") &&
-                             begins_with_one_of_them(column.substr(3)));
+  const bool is_called_so =
+      begins_with_one_of_them(column) ||
+      (is_same_word(column.substr(0, 3), "is_") && begins_with_one_of_them(column.substr(3)));
   if (is_called_so && column.ends_with(".thisN")) {
     return !cell.empty();
   }

@@ -229,7 +229,7 @@ AnswerPlaces find_columns(const Header& header, const AnswerColumns& chosen,
   }
   for (const RowCondition& condition : format.counted) {
     if (const auto place = find(header, {"", "", {condition.column}}, where)) {
-      places.counted.emplace_back(*place, condition.value);
+      places.counted.push_back({*place, condition.value, condition.is_excluded});
     }
   }
   if (!format.block.empty()) {

@@ -30,6 +30,13 @@ struct RowCondition {
   bool is_excluded{false};  // rows with that value are left out, not those without
 };
 
+// The same, of the column at that place in a row, from 0.
+struct PlacedCondition {
+  std::size_t place{};
+  std::string value;
+  bool is_excluded{false};
+};
+
 // Their places in a row, from 0.
 struct AnswerPlaces {
   std::size_t stimulus{};
@@ -40,7 +47,7 @@ struct AnswerPlaces {
   double time_unit_s{1.0};
   // Of tapstudy's own exports: what a row that counts holds (no practice, no catch trial, …), and
   // the block, of which there must be one.
-  std::vector<std::pair<std::size_t, std::string>> counted{};
+  std::vector<PlacedCondition> counted{};
   std::optional<std::size_t> block{};
   std::string possible_time{};  // a column that may hold times, of an unknown unit; empty: none
   std::optional<std::size_t> weight{};  // as chosen, or by its name

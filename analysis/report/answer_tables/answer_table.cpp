@@ -130,14 +130,9 @@ class AnswerReader {
   }
 
  private:
-  struct Condition {
-    std::size_t place{};
-    std::string value;
-    bool is_excluded{false};
-  };
-  using Conditions = std::vector<Condition>;
+  using Conditions = std::vector<PlacedCondition>;
   static bool meets(const Conditions& conditions, const CsvRow& row) {
-    return std::ranges::all_of(conditions, [&](const Condition& condition) {
+    return std::ranges::all_of(conditions, [&](const PlacedCondition& condition) {
       return (row.cells[condition.place] == condition.value) != condition.is_excluded;
     });
   }
@@ -178,9 +173,7 @@ class AnswerReader {
   }
   void add(const CsvRow& row, AnswerTable& table, std::vector<Origin>& origins) const {
     ++table.rows;
-    if (!std::ranges::all_of(places_.counted, [&](const auto& counted) {
-          return row.cells[counted.first] == counted.second;
-        })) {
+    if (!meets(places_.counted, row)) {
       ++table.not_counted;
     } else if (is_unanswered(row.cells[places_.response])) {
       ++table.unanswered[row.cells[places_.response]];

@@ -69,6 +69,15 @@ Cell interval(double value, const std::optional<Interval>& range) {
   return range ? interval(value, *range) : Cell{rounded(value), {value, Value{}, Value{}}};
 }
 
+Cell difference_or_ratio(double difference, const std::optional<Interval>& range, bool is_ratio) {
+  if (!is_ratio) {
+    return interval(difference, range);
+  }
+  return interval(
+      std::exp(difference),
+      range ? std::optional{Interval{std::exp(range->low), std::exp(range->high)}} : std::nullopt);
+}
+
 Cell interval_above_zero(double value, const Interval& range) {
   return interval(value, range.high > 0.0 ? std::optional{range} : std::nullopt);
 }

@@ -82,6 +82,8 @@ Cell probability(const std::optional<double>& p);
 Cell interval(double value, const Interval& interval);
 // Of one that may have no interval.
 Cell interval(double value, const std::optional<Interval>& interval);
+// Of two values a difference or, by the logarithms' difference, their ratio.
+Cell difference_or_ratio(double difference, const std::optional<Interval>& interval, bool is_ratio);
 // Of one that is cut off at 0: without its interval where nothing is left of it, which would look
 // like certainty.
 Cell interval_above_zero(double value, const Interval& interval);

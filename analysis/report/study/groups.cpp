@@ -101,18 +101,6 @@ std::vector<Cell> mean_cells(const GroupValues& values, bool is_ratio) {
           number(has_spread ? std::optional{spread} : std::nullopt)};
 }
 
-Cell compared(const Contrast& contrast) {
-  const GroupContrast& result = contrast.result;
-  if (!contrast.block->personal->is_ratio) {
-    return interval(result.difference, result.interval);
-  }
-  const auto range =
-      result.interval
-          ? std::optional{Interval{std::exp(result.interval->low), std::exp(result.interval->high)}}
-          : std::nullopt;
-  return interval(std::exp(result.difference), range);
-}
-
 void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts,
               ReportTable& table) {
   std::vector<double> p;
@@ -122,8 +110,11 @@ void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts
   for (std::size_t i = 0; i < contrasts.size(); ++i) {
     const Contrast& one = contrasts[i];
     table.rows.push_back({word(measure), word(one.block->block), word(one.first.group->label),
-                          word(one.second.group->label), compared(one), people(one.first),
-                          people(one.second), probability(p[i]), probability(adjusted[i])});
+                          word(one.second.group->label),
+                          difference_or_ratio(one.result.difference, one.result.interval,
+                                              one.block->personal->is_ratio),
+                          people(one.first), people(one.second), probability(p[i]),
+                          probability(adjusted[i])});
   }
 }
 

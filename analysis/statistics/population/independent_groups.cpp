@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <span>
 
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/quantiles.hpp"
 #include "analysis/statistics/resampling/replicates.hpp"
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
@@ -23,12 +23,8 @@ struct Moments {
 
 Moments moments_of(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
-  double squares = 0.0;
-  for (const double value : values) {
-    squares += (value - mean) * (value - mean);
-  }
-  return {mean, squares / (n - 1.0) / n, n - 1.0};
+  const auto [mean, standard_deviation] = mean_and_spread(values);
+  return {mean, standard_deviation * standard_deviation / n, n - 1.0};
 }
 
 // t^2 / (t^2 + 1), which grows with Welch's |t| and is finite where values do not differ.

@@ -315,9 +315,7 @@ SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progres
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
   set_energy_shares(system, body.joints->springs.size(), modes, solved.modes);
   solved.modes.report = report_on(system.bodies, modes);
-  solved.modes.estimate = estimation == ErrorEstimation::wanted
-                              ? estimate_error(body, system, modes, progress)
-                              : ErrorEstimate{{}, not_asked_for, 0.0};
+  solved.modes.estimate = estimate_if_wanted(estimation, body, system, modes, progress);
   DiscreteBody& tapped = system.bodies.front();
   solved.displacement = with_constrained_rows(modes.shapes.topRows(tapped.dofs.count), tapped.dofs);
   solved.mesh = std::move(tapped.mesh);

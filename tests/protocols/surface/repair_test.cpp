@@ -35,14 +35,6 @@ core::TriangleSurface cube_at(double low_m, double side_m) {
   return testing::cells_surface(Eigen::Vector3d::Constant(low_m), Eigen::Vector3d::Constant(side_m),
                                 {1, 1, 1}, [](const Eigen::Vector3i&) { return true; });
 }
-core::TriangleSurface both_of(const core::TriangleSurface& a, const core::TriangleSurface& b) {
-  core::TriangleSurface both;
-  both.points_m.resize(a.points_m.rows() + b.points_m.rows(), 3);
-  both.points_m << a.points_m, b.points_m;
-  both.triangles.resize(a.triangles.rows() + b.triangles.rows(), 3);
-  both.triangles << a.triangles, b.triangles.array() + static_cast<int>(a.points_m.rows());
-  return both;
-}
 core::TriangleSurface without_triangles(const core::TriangleSurface& surface, int count) {
   core::TriangleSurface open = surface;
   open.triangles = surface.triangles.bottomRows(surface.triangles.rows() - count).eval();
@@ -153,7 +145,7 @@ TEST_CASE("two bodies that cross are refused until they are wrapped, in what con
           "[protocols][surface][repair]") {
   const core::TriangleSurface one = cube_at(0.0, 0.02);
   const core::TriangleSurface other = cube_at(0.01, 0.02);
-  const core::TriangleSurface crossing = as_it_is_read(both_of(one, other));
+  const core::TriangleSurface crossing = as_it_is_read(testing::joined_surfaces(one, other));
   CHECK_THROWS_WITH(protocols::repair_surface(crossing, {}), Contains("--wrap"));
   constexpr double wrap_m = 0.002;
   const protocols::SurfaceRepair repair = protocols::repair_surface(crossing, {.wrap_m = wrap_m});
@@ -183,7 +175,8 @@ TEST_CASE("holes that touch each other in one corner are not filled but refused"
 
 TEST_CASE("of several pieces the largest is kept where that is asked for",
           "[protocols][surface][repair]") {
-  const core::TriangleSurface apart = as_it_is_read(both_of(frame(), cube_at(0.1, 0.002)));
+  const core::TriangleSurface apart =
+      as_it_is_read(testing::joined_surfaces(frame(), cube_at(0.1, 0.002)));
   CHECK_THROWS_WITH(protocols::repair_surface(apart, {}), Contains("--largest-piece"));
   const protocols::SurfaceRepair repair =
       protocols::repair_surface(apart, {.is_largest_piece_only = true});

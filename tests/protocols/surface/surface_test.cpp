@@ -29,14 +29,6 @@ core::TriangleSurface without_last_triangle(core::TriangleSurface surface) {
   surface.triangles.conservativeResize(surface.triangles.rows() - 1, 3);
   return surface;
 }
-core::TriangleSurface joined(const core::TriangleSurface& a, const core::TriangleSurface& b) {
-  core::TriangleSurface both;
-  both.points_m.resize(a.points_m.rows() + b.points_m.rows(), 3);
-  both.points_m << a.points_m, b.points_m;
-  both.triangles.resize(a.triangles.rows() + b.triangles.rows(), 3);
-  both.triangles << a.triangles, b.triangles.array() + static_cast<int>(a.points_m.rows());
-  return both;
-}
 core::TriangleSurface shifted(core::TriangleSurface surface, const Eigen::RowVector3d& by_m) {
   surface.points_m.rowwise() += by_m;
   return surface;
@@ -500,7 +492,7 @@ TEST_CASE("a surface that encloses no body is refused with what and where", "[co
   inside_out.triangles.col(1).swap(inside_out.triangles.col(2));
   CHECK_THROWS_WITH(check_surface(inside_out), Contains("inward"));
 
-  CHECK_THROWS_WITH(check_surface(joined(box, shifted(box, {1.0, 0.0, 0.0}))),
+  CHECK_THROWS_WITH(check_surface(testing::joined_surfaces(box, shifted(box, {1.0, 0.0, 0.0}))),
                     Contains("several pieces"));
   CHECK_THROWS_WITH(check_surface(testing::box_surface({600.0, 600.0, 50.0})),
                     Contains("600") && Contains("metres_per_unit"));

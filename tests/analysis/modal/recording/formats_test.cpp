@@ -203,23 +203,28 @@ TEST_CASE("of several data sets one is chosen, and what is no time record is ref
                     Contains("holds no data set 58"));
 }
 
+namespace {
+// Has SciPy save variables, as Python writes them, of a signal x, which is returned.
+std::vector<double> saved_by_scipy(
+    const std::vector<std::pair<std::string, std::string>>& variables_of_file) {
+  std::string script =
+      "from scipy.io import savemat\nx = np.round(1000 * np.sin(0.3 * np.arange(80)))\n";
+  for (const auto& [file, variables] : variables_of_file) {
+    script += "savemat('" + file + "', {" + variables + "})\n";
+  }
+  return testing::python_numbers(script + "out(x)\n");
+}
+}  // namespace
+
 TEST_CASE("arrays of a MATLAB file are what SciPy wrote, and no sound",
           "[analysis][recordings][formats]") {
   const testing::TempDirectory directory;
   const std::string file = directory / "taps.mat";
-  const auto values = testing::python_numbers(
-      "from scipy.io import savemat\nx = np.round(1000 * np.sin(0.3 * np.arange(80)))\n"
-      "savemat('" +
-      file +
-      "', {'unit': 'g', 'n': 3.0, 'acc': x, 'two': np.vstack([x, 2 * x]).astype(np.int16)})\n"
-      "savemat('" +
-      (directory / "rate.mat") +
-      "', {'acc': x.astype(np.float32), 'Fs': 2000.0})\n"
-      "savemat('" +
-      (directory / "times.mat") +
-      "', {'acc': x, 't': np.arange(80) / 2000})\n"
-      "savemat('" +
-      (directory / "small.mat") + "', {'acc': x[:9]})\nout(x)\n");
+  const auto values = saved_by_scipy(
+      {{file, "'unit': 'g', 'n': 3.0, 'acc': x, 'two': np.vstack([x, 2 * x]).astype(np.int16)"},
+       {directory / "rate.mat", "'acc': x.astype(np.float32), 'Fs': 2000.0"},
+       {directory / "times.mat", "'acc': x, 't': np.arange(80) / 2000"},
+       {directory / "small.mat", "'acc': x[:9]"}});
   ReadingOptions options;
   CHECK_THROWS_WITH(read_recording(file, options),
                     Contains("has 3 channels") && Contains("acc, two:1, two:2"));
@@ -246,12 +251,9 @@ TEST_CASE(
     "[analysis][recordings][formats]") {
   const testing::TempDirectory directory;
   const std::string file = directory / "nested.mat";
-  const auto values = testing::python_numbers(
-      "from scipy.io import savemat\nx = np.round(1000 * np.sin(0.3 * np.arange(80)))\n"
-      "savemat('" +
-      file +
-      "', {'fs': 100.0, 'shaker': {'acc': -x, 'fs': 500.0}, 'hammer': {'plate': {'acc': x, "
-      "'fs': 2000.0}}})\nout(x)\n");
+  const auto values = saved_by_scipy({{file,
+                                       "'fs': 100.0, 'shaker': {'acc': -x, 'fs': 500.0}, "
+                                       "'hammer': {'plate': {'acc': x, 'fs': 2000.0}}"}});
   ReadingOptions options;
   CHECK_THROWS_WITH(read_recording(file, options), Contains("shaker.acc, hammer.plate.acc"));
   options.column = "hammer.plate.acc";

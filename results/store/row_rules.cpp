@@ -58,9 +58,15 @@ constexpr std::array rules{
          "'late_impact', 'release', 'untraced', 'setting', 'interval', 'interval_end', "
          "'interval_replay', 'scripted_taps', 'masking', 'masking_underrun', 'masking_cut', "
          "'masking_lost')"},
-    Rule{"no event stands twice",
-         "SELECT kind || ' of trial ' || trial_id FROM event GROUP BY trial_id, t_s, kind, value "
-         "HAVING count(*) > 1"},
+    Rule{"no event stands twice",  // a person can set, set back and set again within one tick
+         "SELECT kind || ' of trial ' || trial_id FROM event WHERE kind <> 'setting' "
+         "GROUP BY trial_id, t_s, kind, value HAVING count(*) > 1"},
+    Rule{"settings are in the order of their times, and at one time differ from the one before",
+         "SELECT DISTINCT 'trial ' || trial_id FROM (SELECT trial_id, t_s, value, "
+         "  lag(t_s) OVER before AS before_s, lag(value) OVER before AS value_before "
+         "  FROM event WHERE kind = 'setting' WINDOW before AS (PARTITION BY trial_id ORDER BY "
+         "rowid)) "
+         "WHERE t_s < before_s OR (t_s = before_s AND value = value_before)"},
     Rule{"no change of state stands twice",
          "SELECT state || ' of session ' || session_id FROM session_event "
          "GROUP BY session_id, t_s, state, number, detail HAVING count(*) > 1"},

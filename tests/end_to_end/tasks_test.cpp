@@ -520,7 +520,9 @@ TEST_CASE("at the terminal + and - move the stimulus, = answers as it is set, ea
   CHECK(sql(directory, "SELECT count(*), count(DISTINCT label) FROM alternative") == "12 2\n");
   CHECK_THAT(result.standard_error, Contains("B is at its limit in that direction") &&
                                         Contains("+ or - to change B, = when it is set"));
-  CHECK(testing::tapstudy({"verify", directory / "study"}).exit_code == 0);
+  const auto verified = testing::tapstudy({"verify", directory / "study"});
+  INFO(verified.standard_output << verified.standard_error);
+  CHECK(verified.exit_code == 0);
 }
 
 TEST_CASE("a staircase in a session goes down after right answers and up after a wrong one",

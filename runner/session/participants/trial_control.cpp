@@ -95,8 +95,9 @@ void TrialControl::render(std::size_t alternative) {
 
 void TrialControl::adjust(std::size_t setting) {
   if (rules_.settings && setting < rules_.settings->values.size()) {
-    setting_ = setting;
-    note_setting();
+    if (std::exchange(setting_, setting) != setting) {
+      note_setting();
+    }
     render(rules_.last());
   }
 }

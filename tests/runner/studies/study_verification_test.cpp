@@ -342,6 +342,20 @@ TEST_CASE("verification notices every row that is missing or stands twice", "[ru
   }
 }
 
+TEST_CASE("settings within one tick are no fault, unless one stands twice or out of its order",
+          "[runner][verify]") {
+  ChangedStudy& study = changed_study();
+  const auto settings = [&](const std::string& rows) {
+    return study.is_noticed(
+        "INSERT INTO event SELECT 1, 0.001 * column1, 'setting', column2 FROM (VALUES " + rows +
+            ")",
+        "SELECT count(*) FROM event");
+  };
+  CHECK(settings("(0, 1), (5, 2), (5, 1), (5, 2), (6, 1)") == false);
+  CHECK(settings("(0, 1), (5, 2), (5, 2)") == true);
+  CHECK(settings("(0, 1), (5, 2), (4, 1)") == true);
+}
+
 TEST_CASE("whoever reads a study that was changed reads it, or ends in an error that says why",
           "[runner][verify]") {
   ChangedStudy& study = changed_study();

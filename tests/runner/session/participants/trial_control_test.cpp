@@ -89,9 +89,12 @@ TEST_CASE("a setting is rendered at once, felt by itself, and an event with its 
   CHECK(adjusted.contacts(1) == 0);
   adjusted.adjust(values.size());  // there is none
   CHECK(adjusted.setting() == 10);
-  REQUIRE(events.rows().size() == 3);
-  const std::vector<double> expected{start, values[2], values[10]};
-  const std::vector<double> times_s{0.0, 2.0, 3.0};
+  adjusted.adjust(10);  // it is so
+  adjusted.adjust(9);
+  adjusted.adjust(10);  // within the same tick
+  REQUIRE(events.rows().size() == 5);
+  const std::vector<double> expected{start, values[2], values[10], values[9], values[10]};
+  const std::vector<double> times_s{0.0, 2.0, 3.0, 3.0, 3.0};
   for (std::size_t i = 0; i < events.rows().size(); ++i) {
     CHECK(events.rows()[i].kind == "setting");
     CHECK(events.rows()[i].value == expected[i]);

@@ -7,6 +7,7 @@
 #include <array>
 #include <iterator>
 #include <optional>
+#include <sstream>
 
 #include "core/text/plain_text.hpp"
 namespace tapstudy::protocols {
@@ -25,7 +26,94 @@ std::string unless_within(const std::string& text, double low, double high, bool
                     : fmt::format("please answer with a {}number from {:.6g} to {:.6g}",
                                   is_whole ? "whole " : "", low, high);
 }
+
+std::vector<std::string> choices_of(const std::string& answer) {
+  std::vector<std::string> choices;
+  std::istringstream parts{answer};
+  for (std::string choice; std::getline(parts, choice, between_choices);) {
+    choices.push_back(choice);
+  }
+  return choices;
+}
+
+// In the form's order, so that equal choices are equal texts.
+std::string unless_chosen(const std::vector<Option>& options, const std::string& answer) {
+  const std::vector<std::string> names = names_of(options);
+  auto from = names.begin();
+  bool is_right = !answer.ends_with(between_choices);
+  for (const std::string& choice : choices_of(answer)) {
+    from = std::find(from, names.end(), choice);
+    is_right = is_right && from != names.end();
+    from = from == names.end() ? from : std::next(from);
+  }
+  return is_right ? ""
+                  : fmt::format(
+                        "please answer with one or more of, in this order and with '{}' "
+                        "between: {}",
+                        between_choices, fmt::join(names, ", "));
+}
+
+bool is_met(const AnswerCondition& condition, const FormAnswers& answers) {
+  const auto answer = answers.find(condition.item);
+  if (answer == answers.end()) {
+    return false;
+  }
+  const auto decides = [&](const std::string& given) {
+    return std::ranges::find(condition.answers, given) != condition.answers.end();
+  };
+  return decides(answer->second) || std::ranges::any_of(choices_of(answer->second), decides);
+}
 }  // namespace
+
+std::string describe(const AnswerCondition& condition) {
+  return fmt::format("{} to '{}' of form '{}'", fmt::join(condition.answers, " or "),
+                     condition.item, condition.form);
+}
+
+std::vector<std::string> answers_that_decide(const FormItem& item) {
+  std::vector<std::string> answers = names_of(item.options);
+  for (int step = 1; item.kind == ItemKind::likert && step <= item.steps; ++step) {
+    answers.push_back(std::to_string(step));
+  }
+  return answers;
+}
+
+std::optional<bool> is_met(const AnswerCondition& condition, const FilledForms& filled) {
+  const auto answers = filled.find(condition.form);
+  return answers == filled.end() ? std::nullopt : std::optional{is_met(condition, answers->second)};
+}
+
+Form form_after(const Form& form, const FilledForms& filled) {
+  Form left = form;
+  std::erase_if(left.items, [&](const FormItem& item) {
+    return item.asked_if && item.asked_if->form != form.name &&
+           !is_met(*item.asked_if, filled).value_or(false);
+  });
+  return left;
+}
+
+std::vector<FormItem> asked_items(const Form& form, const FormAnswers& answers) {
+  std::vector<FormItem> asked;
+  FormAnswers of_asked;
+  for (const FormItem& item : form.items) {
+    if (item.asked_if && item.asked_if->form == form.name && !is_met(*item.asked_if, of_asked)) {
+      continue;
+    }
+    asked.push_back(item);
+    if (const auto answer = answers.find(item.name); answer != answers.end()) {
+      of_asked.insert(*answer);
+    }
+  }
+  return asked;
+}
+
+std::optional<FormItem> item_that_ends(const Form& form, const FormAnswers& answers) {
+  const std::vector<FormItem> asked = asked_items(form, answers);
+  const auto ending = std::ranges::find_if(asked, [&](const FormItem& item) {
+    return is_met({form.name, item.name, item.ends_session}, answers);
+  });
+  return ending == asked.end() ? std::nullopt : std::optional{*ending};
+}
 
 std::string wrong_with(const FormItem& item, const std::string& answer) {
   if (answer.empty()) {
@@ -43,6 +131,8 @@ std::string wrong_with(const FormItem& item, const std::string& answer) {
                  ? ""
                  : fmt::format("please answer with one of: {}",
                                fmt::join(names_of(item.options), ", "));
+    case ItemKind::multiple_choice:
+      return unless_chosen(item.options, answer);
     case ItemKind::text:
       break;
   }

@@ -45,6 +45,10 @@ bool may_end_early(const Block& block) {
   return block.criterion || may_procedures_end_early(block);
 }
 
+bool is_presented(const Block& block, const FilledForms& filled) {
+  return !block.presented_if || is_met(*block.presented_if, filled).value_or(true);
+}
+
 bool do_skipped_trials_come_again(const Block& block) {
   return block.comparison.has_value();
 }

@@ -217,7 +217,8 @@ struct Block {
   std::string instructions;    // before its first trial; may be empty
   std::optional<Confidence> confidence;
   std::optional<Breaks> breaks;
-  std::vector<std::string> forms_after;  // names of forms, asked after its last trial
+  std::optional<AnswerCondition> presented_if;  // on forms_before; unset: to all
+  std::vector<std::string> forms_after;         // names of forms, asked after its last trial
   ExploreLimits explore;
   Vote vote{Vote::majority};
   int max_late_impact_repeats{0};  // of a trial with an impact just after a late tick
@@ -227,6 +228,8 @@ struct Block {
 bool may_procedures_end_early(const Block& block);
 // Likewise, or its criterion may be met.
 bool may_end_early(const Block& block);
+// To a participant who filled in these forms; also where the condition's form was not filled in.
+bool is_presented(const Block& block, const FilledForms& filled);
 // A procedure asked for that answer: of constant stimuli a level would lack one.
 bool do_skipped_trials_come_again(const Block& block);
 // Its stimuli, those of its catch trials, and what is presented beside them.

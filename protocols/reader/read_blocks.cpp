@@ -278,6 +278,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
   read_between_trials(reader, block);
   block.allows_correction = reader.yes_or_no(
       {"correction", "the participant may correct the last answer during the next trial"}, false);
+  block.presented_if = read_presented_if(reader, protocol);
   block.forms_after = read_form_names(
       reader, {"forms_after", "names of forms, asked after the block's last trial"}, protocol);
   block.max_late_impact_repeats =

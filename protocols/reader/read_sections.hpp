@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 
 #include "protocols/protocol.hpp"
 #include "protocols/reader/earlier_defaults.hpp"
@@ -32,6 +33,8 @@ void read_vary(MapReader& stimulus_reader, const Protocol& protocol, Stimulus& s
 void read_forms(MapReader& top, Protocol& protocol);
 std::vector<std::string> read_form_names(MapReader& reader, const Key& key,
                                          const Protocol& protocol);
+// Of a block.
+std::optional<AnswerCondition> read_presented_if(MapReader& block_reader, const Protocol& protocol);
 void read_display(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);
 void read_block_order(MapReader& top, Protocol& protocol);

@@ -1,96 +1,6 @@
-// Questionnaires.
-#include <fmt/format.h>
-
-#include <algorithm>
-
-#include "protocols/form.hpp"
+// What the pages show, and noise for the participant's ears.
 #include "protocols/reader/read_sections.hpp"
 namespace tapstudy::protocols {
-namespace {
-using Presence = MapReader::Presence;
-
-FormItem read_item(MapReader& reader) {
-  constexpr double any = 1e12;
-  FormItem item;
-  item.name = reader.name({"name", "unique in its form"});
-  item.kind = reader.one_of<ItemKind>({"kind",
-                                       "steps from 1; a mark on a line, stored as 0 to 1; a "
-                                       "number; one of several options; free text"},
-                                      item_kind_names);
-  item.question = reader.translated({"question", "text that participants are asked"});
-  item.is_required = reader.yes_or_no({"required", "must be answered"}, true);
-  if (item.kind == ItemKind::likert) {
-    item.steps = reader.integer({"steps", "likert: from 1 to this"}, 2, 11, item.steps);
-  }
-  if (item.kind == ItemKind::likert || item.kind == ItemKind::scale) {
-    item.low =
-        reader.translated({"low", "likert, scale: what the lowest means; unset: not of this kind"});
-    item.high = reader.translated(
-        {"high", "likert, scale: what the highest means; unset: not of this kind"});
-  }
-  if (item.kind == ItemKind::number) {
-    item.min =
-        reader.number({"min", "number: the lowest allowed; unset: not of this kind"}, {-any, any});
-    item.max =
-        reader.number({"max", "number: the highest allowed; unset: not of this kind"}, {-any, any});
-    if (item.max <= item.min) {
-      reader.reject("max", "is not above min");
-    }
-  }
-  if (item.kind == ItemKind::single_choice) {
-    for (const auto& [option, label] : reader.translated_list(
-             {"options", "single_choice: to choose from; unset: not of this kind"})) {
-      item.options.push_back({option, label});
-    }
-    reader.check("options", item.options.size() >= 2, R"({"minItems": 2})",
-                 "a choice has at least two options");
-  }
-  return item;
-}
-
-Form read_form(const std::string& name, MapReader& reader) {
-  Form form;
-  if (reader.has("shipped")) {
-    reader.word(
-        {"shipped",
-         "instead of the rest; nasa_tlx: the raw task load index, in English, German "
-         "and Japanese (translations are ours, not validated); unset: the form is given here"},
-        "form", {"nasa_tlx"});
-    form = nasa_tlx(reader.language_among("shipped", nasa_tlx_languages()));
-  } else {
-    form.title = reader.translated({"title", "above the questions; unset: of a shipped form"});
-    form.text = reader.translated_paragraphs({"text", "before the questions; paragraphs"}, "");
-    reader.list(
-        {"items", "the questions; unset: of a shipped form"}, Presence::at_least_one,
-        [&](MapReader& inner) {
-          const FormItem item = read_item(inner);
-          if (std::ranges::find(form.items, item.name, &FormItem::name) != form.items.end()) {
-            inner.reject("name", fmt::format("'{}' is the name of an earlier item", item.name));
-          }
-          form.items.push_back(item);
-        });
-  }
-  form.name = name;
-  return form;
-}
-}  // namespace
-
-void read_forms(MapReader& top, Protocol& protocol) {
-  top.each({"forms", "questionnaires, by name"}, Presence::optional,
-           [&](const std::string& name, MapReader& reader) {
-             protocol.forms.emplace(name, read_form(name, reader));
-           });
-  protocol.forms_before = read_form_names(
-      top, {"forms_before", "names of forms, asked before the first trial"}, protocol);
-  protocol.forms_after =
-      read_form_names(top, {"forms_after", "names of forms, asked after the last trial"}, protocol);
-}
-
-std::vector<std::string> read_form_names(MapReader& reader, const Key& key,
-                                         const Protocol& protocol) {
-  return reader.words(key, "form", keys_of(protocol.forms), std::vector<std::string>{});
-}
-
 void read_display(MapReader& top, Protocol& protocol) {
   top.map(
       {"display", "what the pages of `run --console` show"}, Presence::optional,
@@ -111,7 +21,6 @@ void read_display(MapReader& top, Protocol& protocol) {
       });
 }
 
-// Noise for the participant's ears.
 namespace {
 using core::NoiseKind;
 

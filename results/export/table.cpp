@@ -196,11 +196,11 @@ std::vector<Column> columns_of_stimuli() {
       {"frequency_hz", real, "Hz", "Undamped natural frequency of the mode"},
       {"damping_ratio", real, "", "Damping ratio of the mode; 1: critical"},
       {"question", text, "", "Question as the protocol states it"},
-      {"item_kind", text, "", "likert, scale, number, single_choice or text"},
+      {"item_kind", text, "", "likert, scale, number, single_choice, multiple_choice or text"},
       {"steps", integer, "", "Steps of a likert item"},
       {"low", text, "", "What the low end of the item means"},
       {"high", text, "", "What the high end of the item means"},
-      {"options", text, "", "Options of a single choice: name=label, a line each"},
+      {"options", text, "", "Options of a choice: name=label, a line each"},
   };
 }
 }  // namespace

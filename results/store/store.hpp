@@ -96,8 +96,8 @@ class Store {
   // Trials that were presented, timed out or skipped, and not answered later; in the order in which
   // that was last.
   std::vector<UnansweredTrial> unanswered_trials(const std::string& participant_id);
-  // Forms that the participant has answered, each with the place where it was asked.
-  std::set<std::pair<std::string, std::string>> filled_forms(const std::string& participant_id);
+  // In the order in which they were stored.
+  std::vector<FormAnswerRow> form_answers_of(const std::string& participant_id);
   // The reasons of exclusion by participant.
   std::map<std::string, std::string> excluded_participants();
   // The participant's, without corrections, in the order given.

@@ -327,29 +327,30 @@ void Store::add_form(const std::vector<FormAnswerRow>& answers) {
                   });
 }
 
-std::set<std::pair<std::string, std::string>> Store::filled_forms(
-    const std::string& participant_id) {
-  Statement row{database_,
-                "SELECT DISTINCT form, asked FROM form_answer JOIN session USING (session_id) "
-                "WHERE participant_id = ?"};
-  row.bind(participant_id);
-  std::set<std::pair<std::string, std::string>> filled;
-  while (row.step()) {
-    filled.emplace(row.text(0), row.text(1));
-  }
-  return filled;
-}
-
-std::vector<FormAnswerRow> Store::forms_for_journal() {
-  Statement row{
-      database_,
-      "SELECT session_id, t_s, form, asked, item, answer FROM form_answer ORDER BY rowid"};
+namespace {
+std::vector<FormAnswerRow> form_answers(Statement row) {
   std::vector<FormAnswerRow> answers;
   while (row.step()) {
     answers.push_back(
         {row.integer(0), row.real(1), row.text(2), row.text(3), row.text(4), row.optional_text(5)});
   }
   return answers;
+}
+}  // namespace
+
+std::vector<FormAnswerRow> Store::form_answers_of(const std::string& participant_id) {
+  Statement row{database_,
+                "SELECT session_id, t_s, form, asked, item, answer FROM form_answer "
+                "JOIN session USING (session_id) WHERE participant_id = ? "
+                "ORDER BY form_answer.rowid"};
+  row.bind(participant_id);
+  return form_answers(std::move(row));
+}
+
+std::vector<FormAnswerRow> Store::forms_for_journal() {
+  return form_answers({database_,
+                       "SELECT session_id, t_s, form, asked, item, answer FROM form_answer "
+                       "ORDER BY rowid"});
 }
 
 // Appends what of it the journal lacks.

@@ -292,6 +292,11 @@ void print_blocks(const protocols::Protocol& protocol, const BlockLengths& lengt
     const BlockLength& length = lengths.at(block.name);
     fmt::print("  {}, about {:.0f} s of tapping\n", heading(block, length),
                length.usual * simulated_trial_s(protocol, block));
+    if (block.presented_if) {
+      fmt::print(
+          "    note: only for those who answer {}; lengths, balance and power are those of all\n",
+          describe(*block.presented_if));
+    }
     if (block.is_practice) {
       continue;  // in no result
     }

@@ -123,6 +123,11 @@ void run(RunOptions options) {
   protocol.rendering.device_response = rig.vibration_response;
   const LiveOutcome outcome = run_live_session({protocol, options.protocol, rig, options.directory,
                                                 request_of(options), console_of(options)});
+  if (outcome.ending_answer) {
+    fmt::print("participant {} takes no part: answered {}, stored in {}/study.db\n",
+               options.participant, *outcome.ending_answer, options.directory);
+    return;
+  }
   fmt::print("participant {}: all {} trials are stored in {}/study.db{}\n", options.participant,
              outcome.answered + outcome.without_answer, options.directory,
              outcome.without_answer == 0

@@ -68,7 +68,7 @@ void BrowserParticipant::rest(const protocols::Breaks& breaks) {
   } while (left_s(times.earliest) > 0.0);
 }
 
-Participant::FormAnswers BrowserParticipant::fill_in(const protocols::Form& form) {
+protocols::FormAnswers BrowserParticipant::fill_in(const protocols::Form& form) {
   return answer_to({.kind = ScreenKind::form, .form = form}).answers;
 }
 

@@ -23,7 +23,7 @@ class BrowserParticipant final : public Participant {
   void practice_is_over() override;
   void rest(const protocols::Breaks& breaks) override;
   bool fills_in_forms() const override { return true; }
-  FormAnswers fill_in(const protocols::Form& form) override;
+  protocols::FormAnswers fill_in(const protocols::Form& form) override;
   void wait_while(const std::function<bool()>& is_paused) override;
   void arrive() override;
   void get_ready(const TrialPrompt& prompt) override;

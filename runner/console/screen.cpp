@@ -49,17 +49,29 @@ Json options_of(const std::vector<protocols::Option>& options) {
   }
   return all;
 }
-Json json_of(const protocols::FormItem& item) {
-  return {{"name", item.name},         {"kind", name(item.kind)},
-          {"question", item.question}, {"is_required", item.is_required},
-          {"steps", item.steps},       {"low", item.low},
-          {"high", item.high},         {"min", item.min},
-          {"max", item.max},           {"options", options_of(item.options)}};
+// A condition on another form has been met: the item would not be here.
+Json json_of(const protocols::FormItem& item, const std::string& form) {
+  Json json{{"name", item.name},
+            {"kind", name(item.kind)},
+            {"question", item.question},
+            {"is_required", item.is_required},
+            {"steps", item.steps},
+            {"low", item.low},
+            {"high", item.high},
+            {"min", item.min},
+            {"max", item.max},
+            {"options", options_of(item.options)},
+            {"ends_session", item.ends_session},
+            {"asked_if", nullptr}};
+  if (item.asked_if && item.asked_if->form == form) {
+    json["asked_if"] = {{"item", item.asked_if->item}, {"is", item.asked_if->answers}};
+  }
+  return json;
 }
 Json json_of(const protocols::Form& form) {
   Json items = Json::array();
   for (const protocols::FormItem& item : form.items) {
-    items.push_back(json_of(item));
+    items.push_back(json_of(item, form.name));
   }
   return {{"title", form.title}, {"text", form.text}, {"items", items}};
 }
@@ -77,9 +89,14 @@ Json or_null(const std::optional<Value>& value) {
   return value ? json_of(*value) : Json{};
 }
 
-bool are_accepted(const protocols::Form& form, const Participant::FormAnswers& answers) {
+// An answer that ends the session comes alone.
+bool are_accepted(const protocols::Form& form, const protocols::FormAnswers& answers) {
+  if (const auto ending = item_that_ends(form, answers)) {
+    return answers.size() == 1 && wrong_with(*ending, answers.at(ending->name)).empty();
+  }
   std::size_t known = 0;
-  const bool are_right = std::ranges::all_of(form.items, [&](const protocols::FormItem& item) {
+  const std::vector<protocols::FormItem> asked = asked_items(form, answers);
+  const bool are_right = std::ranges::all_of(asked, [&](const protocols::FormItem& item) {
     const auto answer = answers.find(item.name);
     known += answer == answers.end() ? 0 : 1;
     return wrong_with(item, answer == answers.end() ? "" : answer->second).empty();
@@ -88,8 +105,8 @@ bool are_accepted(const protocols::Form& form, const Participant::FormAnswers& a
 }
 
 // Numbers and texts, by name.
-Participant::FormAnswers form_answers(const Json& json) {
-  Participant::FormAnswers answers;
+protocols::FormAnswers form_answers(const Json& json) {
+  protocols::FormAnswers answers;
   for (const auto& [name, value] : json.get<std::map<std::string, Json>>()) {
     if (!value.is_string() && !value.is_number()) {
       throw core::InvalidInput{name + " is neither a number nor text"};

@@ -77,8 +77,8 @@ enum class ScreenAction {
 struct ScreenInput {
   ScreenAction action{};
   std::size_t value{};
-  Participant::FormAnswers answers{};  // form
-  std::string text{};                  // enter, answer, correct
+  protocols::FormAnswers answers{};  // form
+  std::string text{};                // enter, answer, correct
   bool operator==(const ScreenInput& other) const = default;
 };
 // Whether that is one of the things that can be done with this screen.

@@ -138,6 +138,12 @@ std::optional<results::GroupRow> group_row(const protocols::Protocol& protocol, 
 
 void resume(const results::SessionRow& earlier, const protocols::Protocol& protocol,
             results::Store& store, BegunSession& session) {
+  session.earlier.forms = store.form_answers_of(earlier.participant_id);
+  if (const auto answer = ending_answer(protocol, session.earlier.forms)) {
+    throw core::InvalidInput{
+        fmt::format("--resume: participant '{}' takes no part: answered {}, which ends the session",
+                    earlier.participant_id, *answer)};
+  }
   if (earlier.planned_order != session.row.planned_order) {
     throw core::InvalidInput{
         "--resume: this program would plan another order than the stored "
@@ -146,11 +152,9 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
   session.row.resumes = earlier.id;
   session.resumed_since_utc = earlier.started_utc;
   const auto as_given = store.answers_as_given(earlier.participant_id);
-  session.earlier = {store.filled_forms(earlier.participant_id),
-                     PracticeRecord{as_given},
-                     as_given,
-                     store.presentations(earlier.participant_id),
-                     {}};
+  session.earlier.practice = PracticeRecord{as_given};
+  session.earlier.as_given = as_given;
+  session.earlier.attempts = store.presentations(earlier.participant_id);
   for (const results::UnansweredTrial& trial : store.unanswered_trials(earlier.participant_id)) {
     session.earlier.requeued.push_back(trial.number);
   }
@@ -288,6 +292,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   const std::string& id = session.row.participant_id;
   const std::size_t given_up = given_up_trials(live.protocol, id, store).size();
   const std::size_t unneeded = unneeded_trials(live.protocol, id, store).size();
-  return {session.schedule.size() - given_up - unneeded, given_up};
+  return {session.schedule.size() - given_up - unneeded, given_up,
+          ending_answer(live.protocol, store.form_answers_of(id))};
 }
 }  // namespace tapstudy::runner

@@ -63,7 +63,8 @@ struct LiveSession {
 
 struct LiveOutcome {
   std::size_t answered{};
-  std::size_t without_answer{};  // their time was over
+  std::size_t without_answer{};                // their time was over
+  std::optional<std::string> ending_answer{};  // to a form, by which the session has ended
 };
 
 // Takes the participant through all unanswered trials.

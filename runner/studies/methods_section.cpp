@@ -225,11 +225,14 @@ std::string describe_taps(const Block& block) {
 // where a block may end early.
 std::string describe_completion(const Block& block, const results::BlockCourseRow& done,
                                 std::size_t participants) {
-  std::string words;
+  std::string words = block.presented_if ? fmt::format(", only for those who answered {}",
+                                                       describe(*block.presented_if))
+                                         : "";
   if (done.participants.size() < participants) {
     words += fmt::format(", by {} of {} participants", done.participants.size(), participants);
   }
-  const auto planned = static_cast<std::size_t>(protocols::planned_trials(block)) * participants;
+  const std::size_t who = block.presented_if ? done.participants.size() : participants;
+  const auto planned = static_cast<std::size_t>(protocols::planned_trials(block)) * who;
   if (!may_end_early(block) && static_cast<std::size_t>(done.answered) < planned) {
     words += fmt::format(", {} of {} answers given", done.answered, planned);
   }

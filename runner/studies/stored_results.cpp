@@ -19,6 +19,7 @@
 #include "results/rows.hpp"
 #include "results/store/study_queries.hpp"
 #include "runner/session/engine/adaptive_blocks.hpp"
+#include "runner/session/engine/between_trials.hpp"
 #include "runner/session/engine/remaining_trials.hpp"
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
@@ -183,10 +184,28 @@ std::set<std::string> participants_of(const std::vector<results::SessionRow>& se
   return participants;
 }
 
+// Those whose answer to a form ended their session, and which: as the protocol says, but to be
+// told.
+std::map<std::string, std::string> who_took_no_part(results::Store& store,
+                                                    const protocols::Protocol& protocol,
+                                                    const std::set<std::string>& participants) {
+  std::map<std::string, std::string> found;
+  for (const std::string& participant : participants) {
+    if (const auto answer = ending_answer(protocol, store.form_answers_of(participant))) {
+      found.emplace(participant, *answer);
+    }
+  }
+  return found;
+}
+
 std::vector<std::string> unfinished(results::Store& store, const protocols::Protocol& protocol,
-                                    const std::set<std::string>& participants) {
+                                    const std::set<std::string>& participants,
+                                    const std::map<std::string, std::string>& without_part) {
   std::vector<std::string> found;
   for (const std::string& participant : participants) {
+    if (without_part.contains(participant)) {
+      continue;
+    }
     const TrialsDone trials = trials_done(protocol, participant, store);
     if (!trials.are_all()) {
       found.push_back(fmt::format("{}: {} of {} trials", participant, trials.done, trials.planned));
@@ -292,9 +311,13 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
     return !answering.contains(visit.participant_id);
   });
   const std::set<std::string> participants = participants_of(found.sessions, excluded, mode);
-  found.unfinished = unfinished(store, protocol, participants);
+  const auto without_part = who_took_no_part(store, protocol, participants);
+  found.unfinished = unfinished(store, protocol, participants, without_part);
   found.excluded = excluded_of(excluded, found.sessions, mode);
   found.deviations = deviations_of(store, mode);
+  for (const auto& [participant, answer] : without_part) {
+    found.deviations.push_back(fmt::format("{} took no part: answered {}", participant, answer));
+  }
   found.presentations = {analysis::orders_of(visit_orders(store), found.answers),
                          missing_replies(store, participants)};
   std::erase_if(found.sessions, [&](const results::SessionRow& session) {

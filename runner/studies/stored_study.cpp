@@ -140,6 +140,8 @@ analysis::QuestionnaireKind kind_of(protocols::ItemKind kind) {
       return analysis::QuestionnaireKind::number;
     case protocols::ItemKind::single_choice:
       return analysis::QuestionnaireKind::choice;
+    case protocols::ItemKind::multiple_choice:
+      return analysis::QuestionnaireKind::choices;
     case protocols::ItemKind::text:
       break;
   }

@@ -25,6 +25,12 @@ class PracticeMissed : public Stopped {
   using Stopped::Stopped;
 };
 
+// A participant gave an answer that ends the session, as the protocol says: which.
+class TookNoPart : public Stopped {
+ public:
+  using Stopped::Stopped;
+};
+
 // Installs handlers: Ctrl-C, a closed terminal, SIGTERM and SIGQUIT request a stop instead of
 // ending the process; a second one ends it.
 void listen_for_stop();

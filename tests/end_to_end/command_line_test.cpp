@@ -357,7 +357,7 @@ TEST_CASE("check counts the screens that a session shows", "[end_to_end][threads
   const TempDirectory directory;
   const std::string study = testing::source("tests/data/every_screen.yaml");
   const auto shown = testing::tapstudy({"check", study}).standard_output;
-  const std::string answers = "\nright\n1\n2\n\n1\n2\n\n2\n3\n4\n0.75\n\n";
+  const std::string answers = "\nright\n\n1\n2\n\n1\n2\n\n2\n3\n4\n0.75\n\n";
   REQUIRE(testing::tapstudy({"run", study, "--participant", "P01", "--out", directory / "study"},
                             answers)
               .exit_code == 0);

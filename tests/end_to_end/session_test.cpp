@@ -441,3 +441,72 @@ TEST_CASE("a report of a study names the sessions that ended early", "[end_to_en
                             "2>/dev/null; tapstudy report $out");
   CHECK_THAT(result.standard_output, Contains("unfinished: P01: 2 of 8 trials"));
 }
+
+namespace {
+// Consent first; the block `main` is for those who write with the left hand.
+std::string screened_study(const TempDirectory& directory) {
+  const std::string file = directory / "screened.yaml";
+  std::string text = testing::contents(testing::source("tests/data/every_screen.yaml"));
+  text = testing::replaced(
+      text, "forms:\n",
+      "forms:\n  consent:\n    title: Consent\n    items:\n"
+      "      - {name: agree, kind: single_choice, question: \"Do you take part?\", "
+      "options: [agreed, declined], ends_session: [declined]}\n"
+      "      - {name: email, kind: text, question: \"Your address?\", required: false}\n");
+  text = testing::replaced(text, "forms_before: [about]", "forms_before: [consent, about]");
+  text = testing::replaced(text, "    instructions: Now",
+                           "    presented_if: {form: about, item: hand, is: [left]}\n"
+                           "    instructions: Now");
+  testing::write(file, text);
+  return file;
+}
+}  // namespace
+
+TEST_CASE("who declines is stored as such and nothing else, and leaves the order to the next",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  const std::string study = screened_study(directory);
+  const auto run = [&](const std::string& participant, const std::string& input,
+                       const std::vector<std::string>& more = {}) {
+    std::vector<std::string> line{"run",       study,   "--participant",
+                                  participant, "--out", directory / "the_study"};
+    line.insert(line.end(), more.begin(), more.end());
+    return testing::tapstudy(line, input);
+  };
+  const auto declined = run("P01", "2\n");
+  INFO(declined.standard_error);
+  CHECK(declined.exit_code == 0);
+  CHECK_THAT(declined.standard_output, Contains("takes no part: answered declined to 'agree'"));
+  CHECK(sql(directory, "SELECT item, answer FROM form_answer") == "agree|declined\n");
+  CHECK(sql(directory, "SELECT count(*) FROM trial") == "0\n");
+  CHECK(sql(directory, "SELECT state, detail FROM session_event ORDER BY rowid DESC LIMIT 1") ==
+        "ended|declined to 'agree' of form 'consent'\n");
+  const auto resumed = run("P01", "1\n", {"--resume"});
+  CHECK(resumed.exit_code == 2);
+  CHECK_THAT(resumed.standard_error, Contains("'P01' takes no part"));
+  // right-handed, a glove among what was held, which is asked then; no trial of `main`
+  const auto right = run("P02", "1\n\n\n2\n3, 2\na thick one\n1\n2\n");
+  INFO(right.standard_error);
+  CHECK(right.exit_code == 0);
+  CHECK_THAT(right.standard_output, Contains("all 2 trials are stored"));
+  CHECK(sql(directory, "SELECT answer FROM form_answer WHERE item IN ('held', 'glove')") ==
+        "a glove;a hammer\na thick one\n");
+  // left-handed; the session is stopped in `main` and gone on with
+  CHECK(run("P03", "1\n\n\n1\n\n1\n2\n\n1\n2\n").exit_code == 130);
+  const auto left = run("P03", "\n2\n3\n4\n0.75\n\n", {"--resume"});
+  INFO(left.standard_error);
+  CHECK(left.exit_code == 0);
+  CHECK(sql(directory,
+            "SELECT participant_id, order_index, (SELECT group_concat(DISTINCT block) FROM trial "
+            "JOIN session AS s USING (session_id) WHERE s.participant_id = p.participant_id AND "
+            "status = 'answered') FROM participant AS p") ==
+        "P01|0|\nP02|0|practice\nP03|0|practice,main\n");
+  const auto verified = testing::tapstudy({"verify", directory / "the_study"});
+  INFO(verified.standard_output << verified.standard_error);
+  CHECK(verified.exit_code == 0);
+  const auto report = testing::tapstudy({"report", directory / "the_study"});
+  INFO(report.standard_error);
+  CHECK_THAT(report.standard_output,
+             Contains("P01 took no part: answered declined to 'agree' of form 'consent'") &&
+                 !Contains("unfinished"));
+}

@@ -279,7 +279,7 @@ def tab_to(driver, selector, limit=80):
 
 
 def fill_in_by_mouse(driver, name, value):
-    """Answers one item of a form: number from 1 (likert), label (single_choice), 0…1 (scale), text."""
+    """Answers one item of a form: number from 1 (likert), label (single_choice), labels (multiple_choice), 0…1 (scale), text."""
     item = find(driver, f'.item[data-name="{name}"]')
     kind = item.get_attribute("class").split()[1]
     driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", item)
@@ -288,6 +288,10 @@ def fill_in_by_mouse(driver, name, value):
     elif kind == "single_choice":
         faces = item.find_elements(By.CSS_SELECTOR, ".option")
         next(face for face in faces if face.text.strip() == value).click()
+    elif kind == "multiple_choice":
+        for face in item.find_elements(By.CSS_SELECTOR, ".option"):
+            if face.text.strip() in value:
+                face.click()
     elif kind == "scale":
         slider = item.find_element(By.CSS_SELECTOR, "input")
         offset = round((value - 0.5) * (slider.size["width"] - 28))
@@ -306,6 +310,11 @@ def fill_in_by_keyboard(driver, name, value):
         labels = [face.text.strip() for face in find_all(driver, f'.item[data-name="{name}"] .option')]
         press(driver, Keys.SPACE)
         press(driver, *[Keys.ARROW_DOWN] * labels.index(str(value)))
+    elif kind == "multiple_choice":
+        for face in find_all(driver, f'.item[data-name="{name}"] .option'):
+            if face.text.strip() in value:
+                press(driver, Keys.SPACE)
+            press(driver, Keys.TAB)
     elif kind == "scale":
         hundredths = round(100 * (value - 0.5))
         press(driver, Keys.SPACE, *[Keys.ARROW_RIGHT if hundredths > 0 else Keys.ARROW_LEFT] * abs(hundredths))

@@ -312,6 +312,13 @@ class EveryScreen(WholeSession):
         browser.wait_for_screen(self.driver, "form")
         browser.fill_in_by_mouse(self.driver, "hand", "right")
         browser.fill_in_by_mouse(self.driver, "age", "29,5")  # as where numbers have decimal commas
+        glove = browser.find(self.driver, '.item[data-name="glove"]')
+        self.assertFalse(glove.is_displayed())
+        browser.fill_in_by_mouse(self.driver, "held", ["a hammer", "a glove"])
+        self.assertTrue(glove.is_displayed())
+        browser.send_form_by_mouse(self.driver)
+        self.assertEqual(browser.current_screen(self.driver)["kind"], "form")  # it is to be answered now
+        browser.fill_in_by_mouse(self.driver, "glove", "a thick one")
         self.check_screen("form")
         browser.send_form_by_mouse(self.driver)
         for index, is_right in ((0, True), (0, False)):
@@ -348,7 +355,7 @@ class EveryScreen(WholeSession):
             "SELECT confidence FROM response WHERE confidence IS NOT NULL"), [(3,), (3,)])
         answers = dict(self.session.rows("SELECT item, answer FROM form_answer"))
         self.assertAlmostEqual(float(answers.pop("clear")), 0.75, delta=0.02)
-        self.assertEqual(answers, {"age": "29.5", "hand": "right", "real": "4", "remarks": "ü"})
+        self.assertEqual(answers, {"age": "29.5", "hand": "right", "held": "a glove;a hammer", "glove": "a thick one", "real": "4", "remarks": "ü"})
 
     def test_numbers_are_taken_as_people_write_them_but_no_thousand_as_a_fraction(self):
         typed = ["2,5", "2.5", "１２", "0,125", "1.000", "1,000", "1e3", ""]

@@ -95,6 +95,8 @@ const char* name_of(QuestionnaireKind kind) {
       return "number";
     case QuestionnaireKind::choice:
       return "single choice";
+    case QuestionnaireKind::choices:
+      return "multiple choice";
     case QuestionnaireKind::text:
       break;
   }
@@ -127,14 +129,23 @@ void add_items(const Questionnaire& form, const std::string& asked,
   }
 }
 
+bool has_chosen(const QuestionnaireItem& item, const std::string& answer,
+                const std::string& option) {
+  return item.kind == QuestionnaireKind::choices
+             ? fmt::format(";{};", answer).find(fmt::format(";{};", option)) != answer.npos
+             : answer == option;
+}
+
 void add_counts(const Questionnaire& form, const std::string& asked,
                 const std::vector<GivenAnswer>& answers, ReportTable& table) {
   for (const QuestionnaireItem& item : form.items) {
     const ItemAnswers own = answers_to(answers, form.name, asked, item.name);
     for (const std::string& option : item.options) {
+      const auto people = std::ranges::count_if(own.given, [&](const GivenAnswer& given) {
+        return has_chosen(item, given.answer.value_or(""), option);
+      });
       table.rows.push_back(
-          {word(form.name), word(asked), word(item.name), word(option),
-           count(std::ranges::count(own.given, std::optional{option}, &GivenAnswer::answer))});
+          {word(form.name), word(asked), word(item.name), word(option), count(people)});
     }
   }
 }

@@ -10,7 +10,8 @@ namespace tapstudy::analysis {
 //   number  a number, or a mark on a line from 0 to 1: quartiles
 //   choice  one of the options: counted
 //   text    only how many there are
-enum class QuestionnaireKind { steps, number, choice, text };
+// choices: several at once, with ';' between them.
+enum class QuestionnaireKind { steps, number, choice, choices, text };
 struct QuestionnaireItem {
   std::string name;
   QuestionnaireKind kind{QuestionnaireKind::text};

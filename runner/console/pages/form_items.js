@@ -3,7 +3,7 @@
 
 import { analogueScale } from "./analogue_scale.js";
 import { el } from "./dom.js";
-import { newGroupName, pickedValue, radioCard, steps } from "./radio_cards.js";
+import { checkCard, newGroupName, pickedValue, radioCard, steps } from "./radio_cards.js";
 import { typedNumber } from "./typed_number.js";
 import { word } from "./words.js";
 
@@ -24,6 +24,16 @@ function singleChoice(item) {
   const group = newGroupName();
   const cards = item.options.map(({ label }, index) => radioCard({ group, value: index, label }));
   return radios(el("div", { className: "options" }, ...cards), (index) => item.options[Number(index)].name);
+}
+
+// As protocols/form.hpp writes several choices.
+const betweenChoices = ";";
+
+function multipleChoice(item) {
+  const cards = item.options.map(({ label }, index) => checkCard({ value: index, label }));
+  const body = el("div", { className: "options" }, ...cards);
+  const chosen = () => [...body.querySelectorAll("input:checked")].map(({ value }) => item.options[Number(value)].name);
+  return { body, value: () => (chosen().length === 0 ? null : chosen().join(betweenChoices)) };
 }
 
 const scale = (item) => analogueScale({ low: item.low ?? "", high: item.high ?? "", label: item.question });
@@ -66,7 +76,7 @@ function text(item, id) {
   };
 }
 
-const makers = { likert, scale, number, single_choice: singleChoice, text };
+const makers = { likert, scale, number, single_choice: singleChoice, multiple_choice: multipleChoice, text };
 const areLabelled = new Set(["number", "text"]);
 
 function titleOf(item, id) {
@@ -78,7 +88,11 @@ function titleOf(item, id) {
 function clearButton(item, field) {
   if (item.is_required || !field.clear) return null;
   const spoken = `${word("clear")}: ${item.question}`;
-  return el("button", { type: "button", className: "quiet", "aria-label": spoken, onclick: field.clear }, word("clear"));
+  const clear = ({ target }) => {
+    field.clear();
+    target.dispatchEvent(new Event("input", { bubbles: true }));
+  };
+  return el("button", { type: "button", className: "quiet", "aria-label": spoken, onclick: clear }, word("clear"));
 }
 
 export function formItem(item, id) {
@@ -94,7 +108,7 @@ export function formItem(item, id) {
     error.textContent = problem ?? "";
     element.classList.toggle("is-wrong", problem !== null);
     inputs.forEach((input) => {
-      if (input.type !== "radio") input.setAttribute("aria-invalid", String(problem !== null));
+      if (input.type !== "radio" && input.type !== "checkbox") input.setAttribute("aria-invalid", String(problem !== null));
     });
   }
   function check() {
@@ -105,5 +119,18 @@ export function formItem(item, id) {
   }
   // At once: on leaving a field the page would move under the press that follows.
   element.addEventListener("input", () => { if (error.textContent) check(); });
-  return { name: item.name, element, value: field.value, check, focus: () => inputs[0].focus() };
+  const isAnswered = (answers) => {
+    const value = String(field.value());
+    return [value, ...value.split(betweenChoices)].some((choice) => answers.includes(choice));
+  };
+  return {
+    name: item.name,
+    askedIf: item.asked_if,
+    element,
+    value: field.value,
+    isAnswered,
+    endsSession: () => isAnswered(item.ends_session),
+    check,
+    focus: () => inputs[0].focus(),
+  };
 }

@@ -1,4 +1,4 @@
-// Answers to pick from: radio buttons that look like cards.
+// Answers to pick from: radio buttons, or boxes to check, that look like cards.
 
 import { el } from "./dom.js";
 
@@ -7,11 +7,14 @@ let groups = 0;
 export const newGroupName = () => `group-${(groups += 1)}`;
 
 // key: the key that picks it, shown beside the label.
-export function radioCard({ group, value, label, key, spokenLabel }) {
-  const input = el("input", { type: "radio", name: group, value: String(value), "aria-label": spokenLabel });
+function card({ type, group, value, label, key, spokenLabel }) {
+  const input = el("input", { type, name: group, value: String(value), "aria-label": spokenLabel });
   const hint = key ? el("kbd", { "aria-hidden": "true" }, key) : null;
   return el("label", { className: "option" }, input, el("span", { className: "face" }, hint, el("span", {}, label)));
 }
+
+export const radioCard = (parts) => card({ type: "radio", ...parts });
+export const checkCard = (parts) => card({ type: "checkbox", ...parts });
 
 export function steps({ count, low, high }) {
   const group = newGroupName();

@@ -13,6 +13,21 @@ function valuesOf(items) {
   return Object.fromEntries(answered.map((item) => [item.name, item.value()]));
 }
 
+// Which items are asked, as protocols/form.cpp decides it.
+function asked(items) {
+  const found = new Map();
+  for (const item of items) {
+    const { askedIf } = item;
+    if (!askedIf || found.get(askedIf.item)?.isAnswered(askedIf.is)) found.set(item.name, item);
+  }
+  return [...found.values()];
+}
+
+function showAsked(items) {
+  const shown = new Set(asked(items));
+  items.forEach((item) => { item.element.hidden = !shown.has(item); });
+}
+
 function build({ form }) {
   const items = form.items.map((item, index) => formItem(item, `item-${index}`));
   const { title, body } = markedText(form.text);
@@ -25,6 +40,8 @@ function build({ form }) {
   element.addEventListener("keydown", (event) => {
     if (event.key === "Enter" && event.target.matches("input")) event.preventDefault();
   });
+  element.addEventListener("input", () => showAsked(items));
+  showAsked(items);
   return { element, items };
 }
 
@@ -36,12 +53,14 @@ export function formScreen(screen, { send, say }) {
 
   element.onsubmit = async (event) => {
     event.preventDefault();
-    const wrong = items.filter((item) => !item.check());
+    const toAnswer = asked(items);
+    const ending = toAnswer.find((item) => item.endsSession());
+    const wrong = ending ? [] : toAnswer.filter((item) => !item.check());
     if (wrong.length > 0) {
       say(word("form_incomplete", { count: wrong.length }));
       wrong[0].focus();
     } else {
-      await send("form", valuesOf(items));
+      await send("form", valuesOf(ending ? [ending] : toAnswer));  // after such an answer nothing else counts
     }
   };
   return { element };

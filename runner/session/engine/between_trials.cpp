@@ -1,6 +1,57 @@
 #include "runner/session/engine/between_trials.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
+protocols::FilledForms filled_forms(const std::vector<results::FormAnswerRow>& answers) {
+  protocols::FilledForms filled;
+  std::string asked;
+  for (const results::FormAnswerRow& row : answers) {
+    protocols::FormAnswers& form = filled[row.form];
+    if (std::exchange(asked, row.form + row.asked) != row.form + row.asked) {
+      form.clear();
+    }
+    if (row.answer) {
+      form[row.item] = *row.answer;
+    }
+  }
+  return filled;
+}
+
+std::optional<std::string> ending_answer(const protocols::Protocol& protocol,
+                                         const std::vector<results::FormAnswerRow>& answers) {
+  for (const auto& [name, given] : filled_forms(answers)) {
+    const auto form = protocol.forms.find(name);
+    if (form == protocol.forms.end()) {
+      continue;
+    }
+    if (const auto ending = item_that_ends(form->second, given)) {
+      return protocols::describe({name, ending->name, {given.at(ending->name)}});
+    }
+  }
+  return std::nullopt;
+}
+
+BetweenTrials::BetweenTrials(Parts parts, const std::vector<results::FormAnswerRow>& forms)
+    : parts_{std::move(parts)}, filled_{filled_forms(forms)} {
+  for (const results::FormAnswerRow& row : forms) {
+    asked_.emplace(row.form, row.asked);
+  }
+}
+
+protocols::Schedule BetweenTrials::presented(const protocols::Schedule& schedule) const {
+  protocols::Schedule presented;
+  std::ranges::copy_if(schedule, std::back_inserter(presented),
+                       [&](const protocols::PlannedTrial& trial) {
+                         return is_presented(parts_.protocol.block(trial.block), filled_);
+                       });
+  return presented;
+}
+
 bool is_end_of_practice_said(const protocols::Block& before, const protocols::Block& block) {
   return before.is_practice && !block.is_practice && block.instructions.empty();
 }
@@ -14,9 +65,9 @@ void BetweenTrials::begin(bool has_trials) {
 }
 
 // Also those of a block that an earlier session finished, but for its questionnaires.
-void BetweenTrials::ask_after_blocks(const protocols::Schedule& schedule,
+void BetweenTrials::ask_after_blocks(const protocols::Schedule& presented,
                                      const std::optional<std::string>& up_to) {
-  for (const protocols::PlannedTrial& trial : schedule) {
+  for (const protocols::PlannedTrial& trial : presented) {
     if (trial.block == up_to) {
       return;
     }
@@ -25,11 +76,10 @@ void BetweenTrials::ask_after_blocks(const protocols::Schedule& schedule,
 }
 
 void BetweenTrials::before(const protocols::PlannedTrial& trial,
-                           const protocols::Schedule& schedule) {
-  begin(true);
+                           const protocols::Schedule& presented) {
   const protocols::Block& block = parts_.protocol.block(trial.block);
   if (block_ != trial.block) {
-    ask_after_blocks(schedule, trial.block);
+    ask_after_blocks(presented, trial.block);
     introduce(block);
     block_ = trial.block;
     trials_since_rest_ = 0;
@@ -60,9 +110,8 @@ void BetweenTrials::rest_if_due(const protocols::Block& block) {
 }
 
 // A session that was interrupted just before its last questionnaires has no trial left.
-void BetweenTrials::after_last_trial(const protocols::Schedule& schedule) {
-  begin(false);
-  ask_after_blocks(schedule, std::nullopt);
+void BetweenTrials::after_last_trial(const protocols::Schedule& presented) {
+  ask_after_blocks(presented, std::nullopt);
   ask(parts_.protocol.forms_after, asked_at_end);
 }
 
@@ -76,21 +125,30 @@ void BetweenTrials::read(const std::string& text, const std::string& whose) {
 
 void BetweenTrials::ask(const std::vector<std::string>& forms, const std::string& asked) {
   for (const std::string& name : forms) {
-    if (!parts_.participant.fills_in_forms() || filled_.contains({name, asked})) {
+    if (!parts_.participant.fills_in_forms() || asked_.contains({name, asked})) {
       continue;
     }
-    const protocols::Form& form = parts_.protocol.forms.at(name);
+    const protocols::Form form = form_after(parts_.protocol.forms.at(name), filled_);
+    if (form.items.empty()) {
+      continue;
+    }
     parts_.wait_while_paused();
     parts_.states.enter(SessionState::form, {}, name);
-    const Participant::FormAnswers answers = parts_.participant.fill_in(form);
+    const protocols::FormAnswers answers = parts_.participant.fill_in(form);
+    const auto ending = item_that_ends(form, answers);
     std::vector<results::FormAnswerRow> rows;
-    for (const protocols::FormItem& item : form.items) {
+    for (const protocols::FormItem& item :
+         ending ? std::vector{*ending} : asked_items(form, answers)) {
       const auto answer = answers.find(item.name);
       rows.push_back({0, 0.0, name, asked, item.name,
                       answer == answers.end() ? std::nullopt : std::optional{answer->second}});
     }
     parts_.save_form(std::move(rows));
-    filled_.emplace(name, asked);
+    if (ending) {
+      throw TookNoPart{protocols::describe({name, ending->name, {answers.at(ending->name)}})};
+    }
+    asked_.emplace(name, asked);
+    filled_[name] = answers;
   }
 }
 }  // namespace tapstudy::runner

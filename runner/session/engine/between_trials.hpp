@@ -15,11 +15,9 @@
 #include "runner/session/engine/session_states.hpp"
 #include "runner/session/participants/participant.hpp"
 namespace tapstudy::runner {
-using FilledForms = std::set<std::pair<std::string, std::string>>;  // form, where it was asked
-
 // What a participant has answered in earlier sessions that a new one depends on.
 struct EarlierAnswers {
-  FilledForms filled_forms{};
+  std::vector<results::FormAnswerRow> forms{};
   PracticeRecord practice{};
   std::vector<results::JournalledAnswer> as_given{};  // in that order
   std::map<int, int> attempts{};                      // of each trial, by its number
@@ -29,6 +27,12 @@ struct EarlierAnswers {
 // Where forms are asked that come after no block; no block can have these names.
 inline constexpr const char* asked_at_begin = "session begin";
 inline constexpr const char* asked_at_end = "session end";
+
+// Of a form that was asked more than once, the latest.
+protocols::FilledForms filled_forms(const std::vector<results::FormAnswerRow>& answers);
+// "no to 'agree' of form 'consent'": the answer that ended the participant's part in the study.
+std::optional<std::string> ending_answer(const protocols::Protocol& protocol,
+                                         const std::vector<results::FormAnswerRow>& answers);
 
 // Between these two blocks. A block's own instructions say by themselves what counts.
 bool is_end_of_practice_said(const protocols::Block& before, const protocols::Block& block);
@@ -44,24 +48,27 @@ class BetweenTrials {
     std::function<void(std::vector<results::FormAnswerRow>)> save_form;
     std::function<void()> wait_while_paused;
   };
-  // filled: those answered in an earlier session.
-  BetweenTrials(Parts parts, FilledForms filled)
-      : parts_{std::move(parts)}, filled_{std::move(filled)} {}
-  // Both throw Stopped if the participant stops.
-  void before(const protocols::PlannedTrial& trial, const protocols::Schedule& schedule);
-  void after_last_trial(const protocols::Schedule& schedule);
+  // forms: what was answered in earlier sessions.
+  BetweenTrials(Parts parts, const std::vector<results::FormAnswerRow>& forms);
+  // All throw Stopped if the participant stops, and TookNoPart after an answer that ends the
+  // session.
+  void begin(bool has_trials);
+  // What is presented to who answered so; begin is over.
+  protocols::Schedule presented(const protocols::Schedule& schedule) const;
+  void before(const protocols::PlannedTrial& trial, const protocols::Schedule& presented);
+  void after_last_trial(const protocols::Schedule& presented);
 
  private:
-  void begin(bool has_trials);
   // nullopt: after all blocks.
-  void ask_after_blocks(const protocols::Schedule& schedule,
+  void ask_after_blocks(const protocols::Schedule& presented,
                         const std::optional<std::string>& up_to);
   void read(const std::string& text, const std::string& whose);
   void introduce(const protocols::Block& block);
   void rest_if_due(const protocols::Block& block);
   void ask(const std::vector<std::string>& forms, const std::string& asked);
   Parts parts_;
-  FilledForms filled_;
+  std::set<std::pair<std::string, std::string>> asked_;  // forms, and where
+  protocols::FilledForms filled_;
   bool has_begun_{false};
   std::optional<std::string> block_;
   int trials_since_rest_{0};

@@ -6,6 +6,7 @@
 
 #include "protocols/schedule/schedule.hpp"
 #include "runner/session/engine/adaptive_blocks.hpp"
+#include "runner/session/engine/between_trials.hpp"
 #include "runner/session/engine/practice.hpp"
 namespace tapstudy::runner {
 std::vector<int> given_up_trials(const protocols::Protocol& protocol,
@@ -24,7 +25,9 @@ std::vector<int> given_up_trials(const protocols::Protocol& protocol,
 std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store) {
   const auto session = store.latest_session(participant_id);
-  if (!session || std::ranges::none_of(protocol.blocks, protocols::may_end_early)) {
+  if (!session || std::ranges::none_of(protocol.blocks, [](const protocols::Block& block) {
+        return block.presented_if || protocols::may_end_early(block);
+      })) {
     return {};
   }
   const protocols::Schedule schedule = protocols::make_schedule(
@@ -36,9 +39,12 @@ std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
   std::set<int> done{answered.begin(), answered.end()};
   const std::vector<int> given_up = given_up_trials(protocol, participant_id, store);
   done.insert(given_up.begin(), given_up.end());
+  const protocols::FilledForms filled = filled_forms(store.form_answers_of(participant_id));
   std::vector<int> unneeded;
   for (const protocols::PlannedTrial& trial : schedule) {
-    const bool is_over = practice.is_met(protocol.block(trial.block)) || adaptive.is_over(trial);
+    const protocols::Block& block = protocol.block(trial.block);
+    const bool is_over =
+        !is_presented(block, filled) || practice.is_met(block) || adaptive.is_over(trial);
     if (is_over && !done.contains(trial.number)) {
       unneeded.push_back(trial.number);
     }

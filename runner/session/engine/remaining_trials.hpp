@@ -14,8 +14,8 @@ namespace tapstudy::runner {
 // those of procedures, or timed out (at_limit: give_up).
 std::vector<int> given_up_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store);
-// Those that were never presented, because their block's criterion was met before, or its
-// procedures were finished.
+// Those that were never presented, because their block's criterion was met before, its procedures
+// were finished, or it is not presented to who answered the forms so.
 std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
                                  const std::string& participant_id, results::Store& store);
 

@@ -24,13 +24,19 @@ bool has_late_impact(const TrialResult& result) {
 std::optional<Interruption> TrialEngine::run(const protocols::Schedule& schedule,
                                              std::set<int>& done_trials) {
   try {
-    const auto interruption = run_all(schedule, done_trials);
+    between_trials_.begin(done_trials.size() < schedule.size());
+    const protocols::Schedule presented = between_trials_.presented(schedule);
+    const auto interruption = run_all(presented, done_trials);
     if (!interruption) {
-      between_trials_.after_last_trial(schedule);
+      between_trials_.after_last_trial(presented);
       parts_.states.enter(SessionState::ended);
     }
     note_events();
     return interruption;
+  } catch (const TookNoPart& answer) {
+    parts_.states.enter(SessionState::ended, {}, answer.what());
+    note_events();
+    return std::nullopt;
   } catch (const PracticeMissed& missed) {
     note_stop(missed.what());
     throw;

@@ -30,7 +30,7 @@ class TrialEngine {
             {parts.protocol, parts.participant, parts.states,
              [this](std::vector<results::FormAnswerRow> rows) { save(std::move(rows)); },
              [this] { wait_while_paused(); }},
-            earlier.filled_forms},
+            earlier.forms},
         practice_{parts.protocol, parts.states, earlier.practice},
         as_given_{earlier.as_given},
         recorder_{recorder},
@@ -41,7 +41,8 @@ class TrialEngine {
   // again, it repeats that one. A trial that took too long comes again at the end of its block, if
   // the block says so, as does one that the operator skipped if a procedure chose its level. Throws
   // Stopped if the participant or the operator stops, StoreError if a trial cannot be stored; the
-  // trial in progress is stored as interrupted, if possible.
+  // trial in progress is stored as interrupted, if possible. Trials that are not presented to who
+  // answered so before them count as done, and all do after an answer that ends the session.
   std::optional<Interruption> run(const protocols::Schedule& schedule, std::set<int>& done_trials);
   std::int64_t ticks() const noexcept { return ticks_; }  // rendered so far
   int trials() const noexcept { return trials_; }         // stored so far, however they ended

@@ -76,10 +76,10 @@ class Participant {
   virtual void read(const std::string& /*instructions*/) {}
   virtual void practice_is_over() {}
   virtual void rest(const protocols::Breaks& /*breaks*/) {}
-  // By item, those left out being absent. A simulation has nothing to say about itself.
-  using FormAnswers = std::map<std::string, std::string>;
+  // A simulation has nothing to say about itself.
   virtual bool fills_in_forms() const { return false; }
-  virtual FormAnswers fill_in(const protocols::Form& /*form*/) { return {}; }
+  // To the items that are asked (asked_items); each is an answer of its kind.
+  virtual protocols::FormAnswers fill_in(const protocols::Form& /*form*/) { return {}; }
   // The operator's pause, until is_paused is false.
   virtual void wait_while(const std::function<bool()>& /*is_paused*/) {}
   // Returns once somebody is there to answer.

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
+#include <set>
+#include <sstream>
 #include <thread>
 
 #include "runner/session/participants/terminal_trial.hpp"
@@ -179,19 +182,49 @@ std::string input_hint(const protocols::FormItem& item) {
       return fmt::format("a number from {:.6g} to {:.6g}", item.min, item.max);
     case ItemKind::single_choice:
       return "the number of your answer";
+    case ItemKind::multiple_choice:
+      return "the numbers of your answers, with blanks between";
     case ItemKind::text:
       break;
   }
   return "a line of text";
 }
 
+std::optional<std::string> option_typed(const protocols::FormItem& item, const std::string& typed) {
+  const auto number = whole_number(typed, 1, static_cast<int>(item.options.size()));
+  return number ? std::optional{item.options[static_cast<std::size_t>(*number - 1)].name}
+                : std::nullopt;
+}
+
+// In the form's order, each once.
+std::string choices_typed(const protocols::FormItem& item, const std::string& typed) {
+  std::set<std::string> chosen;
+  std::string with_blanks = typed;
+  std::ranges::replace(with_blanks, ',', ' ');
+  std::istringstream numbers{with_blanks};
+  for (std::string number; numbers >> number;) {
+    const auto option = option_typed(item, number);
+    if (!option) {
+      return typed;
+    }
+    chosen.insert(*option);
+  }
+  std::string text;
+  for (const protocols::Option& option : item.options) {
+    if (chosen.contains(option.name)) {
+      text += (text.empty() ? "" : std::string{protocols::between_choices}) + option.name;
+    }
+  }
+  return text;
+}
+
 // Options are numbered at the terminal; numbers may have a decimal comma.
 std::string as_stored(const protocols::FormItem& item, const std::string& typed) {
   switch (item.kind) {
-    case ItemKind::single_choice: {
-      const auto number = whole_number(typed, 1, static_cast<int>(item.options.size()));
-      return number ? item.options[static_cast<std::size_t>(*number - 1)].name : typed;
-    }
+    case ItemKind::single_choice:
+      return option_typed(item, typed).value_or(typed);
+    case ItemKind::multiple_choice:
+      return choices_typed(item, typed);
     case ItemKind::scale:
     case ItemKind::number:
       return protocols::with_decimal_point(typed);
@@ -204,9 +237,12 @@ std::string as_stored(const protocols::FormItem& item, const std::string& typed)
 
 // Options were shown in the participant's language, by number.
 std::string told(const protocols::FormItem& item, const std::string& wrong) {
-  return item.kind == ItemKind::single_choice && item.options.size() > 1
-             ? fmt::format("please answer with a number from 1 to {}", item.options.size())
-             : wrong;
+  if (item.options.empty()) {
+    return wrong;
+  }
+  return fmt::format("please answer with {} from 1 to {}",
+                     item.kind == ItemKind::multiple_choice ? "numbers" : "a number",
+                     item.options.size());
 }
 
 constexpr std::string_view without_this_form =
@@ -235,16 +271,23 @@ std::string TerminalParticipant::answer_to(const protocols::FormItem& item) {
   }
 }
 
-Participant::FormAnswers TerminalParticipant::fill_in(const protocols::Form& form) {
+protocols::FormAnswers TerminalParticipant::fill_in(const protocols::Form& form) {
   if (forget_typed_ahead()) {
     ask_to_stop();
     stop_if_asked(without_this_form);
   }
   say("\n{}\n{}\n", form.title, marked_text(form.text, is_shown_by_terminal()));
-  FormAnswers answers;
+  protocols::FormAnswers answers;
   for (const protocols::FormItem& item : form.items) {
+    const auto asked = asked_items(form, answers);  // so far
+    if (std::ranges::find(asked, item.name, &protocols::FormItem::name) == asked.end()) {
+      continue;
+    }
     if (std::string answer = answer_to(item); !answer.empty()) {
       answers.emplace(item.name, std::move(answer));
+    }
+    if (item_that_ends(form, answers)) {
+      break;
     }
   }
   return answers;

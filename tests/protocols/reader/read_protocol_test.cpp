@@ -412,6 +412,10 @@ TEST_CASE("an item of a form takes what its kind allows and nothing else", "[pro
   const FormItem choice = item(ItemKind::single_choice);
   CHECK(takes(choice, "left"));
   CHECK_FALSE((takes(choice, "Left") || takes(choice, "1")));
+  const FormItem several = item(ItemKind::multiple_choice);
+  CHECK((takes(several, "left") && takes(several, "right") && takes(several, "left;right")));
+  CHECK_FALSE((takes(several, "right;left") || takes(several, "left;left") ||
+               takes(several, "left;") || takes(several, ";left") || takes(several, "middle")));
   const FormItem text = item(ItemKind::text);
   CHECK(takes(text, "anything, \"quoted\""));
   CHECK_FALSE(takes(text, std::string(6000, 'x')));
@@ -419,12 +423,97 @@ TEST_CASE("an item of a form takes what its kind allows and nothing else", "[pro
 
 TEST_CASE("only what is not required may be left out", "[protocols][forms]") {
   for (const ItemKind kind : {ItemKind::likert, ItemKind::scale, ItemKind::number,
-                              ItemKind::single_choice, ItemKind::text}) {
+                              ItemKind::single_choice, ItemKind::multiple_choice, ItemKind::text}) {
     FormItem one = item(kind);
     CHECK_FALSE(takes(one, ""));
     one.is_required = false;
     CHECK(takes(one, ""));
   }
+}
+
+namespace {
+std::string names_of(const std::vector<FormItem>& items) {
+  std::string names;
+  for (const FormItem& one : items) {
+    names += one.name + " ";
+  }
+  return names;
+}
+
+FormItem asked_if(const std::string& name, const AnswerCondition& condition) {
+  FormItem made = item(ItemKind::single_choice);
+  made.name = name;
+  made.asked_if = condition;
+  return made;
+}
+}  // namespace
+
+TEST_CASE("an item is asked of whom gave such an answer to an item that was asked",
+          "[protocols][forms]") {
+  FormItem first = item(ItemKind::multiple_choice);
+  first.name = "first";
+  const Form form{"own",
+                  "",
+                  "",
+                  {first, asked_if("second", {"own", "first", {"right"}}),
+                   asked_if("third", {"own", "second", {"left", "right"}}),
+                   asked_if("other", {"before", "hand", {"left"}})}};
+  CHECK(names_of(asked_items(form_after(form, {{"before", {{"hand", "left"}}}}), {})) ==
+        "first other ");
+  const Form after = form_after(form, {{"before", {{"hand", "right"}}}});
+  CHECK(names_of(after.items) == "first second third ");
+  CHECK(names_of(form_after(form, {}).items) == "first second third ");
+  CHECK(names_of(asked_items(after, {{"first", "left"}})) == "first ");
+  CHECK(names_of(asked_items(after, {{"first", "left;right"}})) == "first second ");
+  CHECK(names_of(asked_items(after, {{"first", "right"}, {"second", "left"}})) ==
+        "first second third ");
+  // an answer to what is not asked decides nothing
+  CHECK(names_of(asked_items(after, {{"first", "left"}, {"second", "left"}})) == "first ");
+}
+
+TEST_CASE("the first answer of those that end a session is the one that does",
+          "[protocols][forms]") {
+  FormItem agree = item(ItemKind::single_choice);
+  agree.name = "agree";
+  agree.ends_session = {"right"};
+  FormItem hidden = asked_if("hidden", {"own", "agree", {"right"}});
+  hidden.ends_session = {"left"};
+  FormItem last = item(ItemKind::likert);
+  last.name = "last";
+  last.ends_session = {"1", "2"};
+  const Form form{"own", "", "", {agree, hidden, last}};
+  CHECK_FALSE(item_that_ends(form, {}));
+  CHECK_FALSE(item_that_ends(form, {{"agree", "left"}, {"last", "3"}}));
+  CHECK(item_that_ends(form, {{"agree", "right"}, {"last", "1"}})->name == "agree");
+  CHECK(item_that_ends(form, {{"agree", "left"}, {"hidden", "left"}, {"last", "2"}})->name ==
+        "last");
+}
+
+TEST_CASE("a condition on an answer that nobody can have given is one error",
+          "[protocols][forms]") {
+  const auto [from, to, said] = GENERATE(table<std::string, std::string, std::string>({
+      {"{item: held, is: [a glove]}", "{item: later, is: [a glove]}",
+       "'later' is not a known item with such answers"},
+      {"{item: held, is: [a glove]}", "{item: age, is: [20]}",
+       "'age' is not a known item with such answers"},
+      {"{item: held, is: [a glove]}", "{item: held, is: [a sock]}",
+       "'a sock' is not a known answer"},
+      {"{item: held, is: [a glove]}", "{form: rating, item: real, is: [1]}",
+       "'rating' is not a known form that stands before"},
+      {"{item: held, is: [a glove]}", "{item: held}", "missing"},
+      {"required: false}\nforms_before: [about]",
+       "asked_if: {form: about, item: hand, is: [left]}}\nforms_before: [rating]",
+       "must have 'about' before 'rating'"},
+      {"    instructions: Now",
+       "    presented_if: {form: rating, item: real, is: [1]}\n    instructions: Now",
+       "'rating' is not a known form of forms_before"},
+      {"[a stylus, a glove", "[a stylus; a pen, a glove", "stands between the choices"},
+  }));
+  INFO(from << " → " << to);
+  const std::string error = refusal(testing::replaced(
+      testing::contents(testing::source("tests/data/every_screen.yaml")), from, to));
+  CHECK_THAT(error, Contains(said));
+  CHECK(std::count(error.begin(), error.end(), '\n') == 0);
 }
 
 TEST_CASE("NASA's task load index has its six scales", "[protocols][forms]") {

@@ -313,9 +313,11 @@ TEST_CASE("a form is stored whole, once, and again in the journal", "[results][s
     CHECK_THROWS(store.add_form(answers));
     CHECK_THROWS(store.add_form({{row.id, 2.0, "load", "main", "effort", "0.5"}, answers.front()}));
     store.add_trial(testing::small_study::trial(row.id, 1, "a"));
-    CHECK(store.filled_forms("P01") ==
-          std::set<std::pair<std::string, std::string>>{{"about", "session begin"}});
-    CHECK(store.filled_forms("P02").empty());
+    const std::vector<FormAnswerRow> of_participant = store.form_answers_of("P01");
+    REQUIRE(of_participant.size() == 2);
+    CHECK(of_participant[0].answer == "left");
+    CHECK(of_participant[1].item == "age");
+    CHECK(store.form_answers_of("P02").empty());
   }
   std::filesystem::remove(directory / "study.db");
   Store store = Store::from_journal(directory.path());

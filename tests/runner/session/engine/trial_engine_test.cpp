@@ -12,6 +12,7 @@
 #include "runner/session/engine/remaining_trials.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/engine/session_states.hpp"
+#include "runner/terminal/process_exit.hpp"
 #include "support/catch.hpp"
 #include "support/no_real_plates.hpp"
 #include "support/processes.hpp"
@@ -381,7 +382,7 @@ TEST_CASE("a block's questionnaire that an interruption left open is asked befor
     }
     void read(const std::string& text) override { done_.push_back(text); }
     bool fills_in_forms() const override { return true; }
-    FormAnswers fill_in(const protocols::Form& form) override {
+    protocols::FormAnswers fill_in(const protocols::Form& form) override {
       done_.push_back(form.title);
       return {};
     }
@@ -389,6 +390,7 @@ TEST_CASE("a block's questionnaire that an interruption left open is asked befor
   };
   protocols::Protocol protocol;
   protocol.forms["load"].title = "form";
+  protocol.forms["load"].items.emplace_back().is_required = false;
   for (const char* const name : {"first", "second"}) {
     protocols::Block& block = protocol.blocks.emplace_back();
     block.name = name;
@@ -405,6 +407,98 @@ TEST_CASE("a block's questionnaire that an interruption left open is asked befor
   between.before(schedule[1], schedule);
   between.before(schedule[1], schedule);
   CHECK(done == std::vector<std::string>{"form", "read second"});
+}
+
+namespace {
+// Answers every form with the same.
+struct Willing final : runner::Participant {
+  explicit Willing(protocols::FormAnswers answers) : answers_{std::move(answers)} {}
+  std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
+                                     runner::TrialControl& /*control*/) override {
+    return std::nullopt;
+  }
+  bool fills_in_forms() const override { return true; }
+  protocols::FormAnswers fill_in(const protocols::Form& form) override {
+    asked_.push_back(form.name);
+    return answers_;
+  }
+  protocols::FormAnswers answers_;
+  std::vector<std::string> asked_;
+};
+
+protocols::Protocol with_consent() {
+  protocols::Protocol protocol;
+  protocols::Form& consent = protocol.forms["consent"];
+  consent.name = "consent";
+  protocols::FormItem item;
+  item.kind = protocols::ItemKind::single_choice;
+  item.options = {{"yes", "Yes"}, {"no", "No"}};
+  item.name = "agree";
+  item.ends_session = {"no"};
+  consent.items.push_back(item);
+  item.name = "hand";
+  item.ends_session = {};
+  consent.items.push_back(item);
+  protocol.forms["about"].name = "about";
+  protocol.forms["about"].items.push_back(item);
+  protocol.forms_before = {"consent", "about"};
+  for (const char* const name : {"yes", "no", "all"}) {
+    protocols::Block& block = protocol.blocks.emplace_back();
+    block.name = name;
+    if (block.name != "all") {
+      block.presented_if = protocols::AnswerCondition{"consent", "hand", {name}};
+    }
+  }
+  return protocol;
+}
+}  // namespace
+
+TEST_CASE("of who takes no part nothing is asked or stored but the answer that says so",
+          "[runner][session]") {
+  const protocols::Protocol protocol = with_consent();
+  Willing person{{{"agree", "no"}, {"hand", "yes"}}};
+  runner::SessionStates states{1, [] { return 0.0; }};
+  std::vector<results::FormAnswerRow> stored;
+  runner::BetweenTrials between{
+      {protocol, person, states,
+       [&](std::vector<results::FormAnswerRow> rows) { stored = std::move(rows); }, [] {}},
+      {}};
+  CHECK_THROWS_AS(between.begin(true), runner::TookNoPart);
+  CHECK(person.asked_ == std::vector<std::string>{"consent"});
+  REQUIRE(stored.size() == 1);
+  CHECK(stored[0].item == "agree");
+  CHECK(stored[0].answer == "no");
+  CHECK(runner::ending_answer(protocol, stored) == "no to 'agree' of form 'consent'");
+}
+
+TEST_CASE("a block is presented to those who answered so, now or in an earlier session",
+          "[runner][session]") {
+  const protocols::Protocol protocol = with_consent();
+  protocols::Schedule schedule(3);
+  for (std::size_t i = 0; i < schedule.size(); ++i) {
+    schedule[i].block = protocol.blocks[i].name;
+  }
+  const auto presented = [&](runner::BetweenTrials& between) {
+    std::vector<std::string> blocks;
+    for (const protocols::PlannedTrial& trial : between.presented(schedule)) {
+      blocks.push_back(trial.block);
+    }
+    return blocks;
+  };
+  runner::SessionStates states{1, [] { return 0.0; }};
+  std::vector<results::FormAnswerRow> stored;
+  const auto store = [&](const std::vector<results::FormAnswerRow>& rows) {
+    stored.insert(stored.end(), rows.begin(), rows.end());
+  };
+  Willing person{{{"agree", "yes"}, {"hand", "no"}}};
+  runner::BetweenTrials now{{protocol, person, states, store, [] {}}, {}};
+  now.begin(true);
+  CHECK(presented(now) == std::vector<std::string>{"no", "all"});
+  Willing again{{{"agree", "yes"}, {"hand", "yes"}}};
+  runner::BetweenTrials later{{protocol, again, states, store, [] {}}, stored};
+  later.begin(true);
+  CHECK(again.asked_.empty());
+  CHECK(presented(later) == std::vector<std::string>{"no", "all"});
 }
 
 using namespace tapstudy::runner;

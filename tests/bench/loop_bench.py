@@ -2,10 +2,10 @@
 """loop_bench.py LOOP_BENCH: how late the haptic loop wakes beside cyclictest, at the same priority
 and period, taken in turns, idle and under stress-ng."""
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
+
+import load
 
 PRIORITY, PERIOD_US, TICKS, ROUNDS = 80, 1000, 3000, 7
 SHARE = 0.999
@@ -47,20 +47,12 @@ def compare(name, program):
 
 def main():
     program = os.path.abspath(sys.argv[1])
-    if not (shutil.which("cyclictest") and shutil.which("stress-ng")):
-        sys.exit("this takes cyclictest and stress-ng: apt-get install rt-tests stress-ng")
+    load.require("cyclictest", "stress-ng")
     print(f"lateness [us], p99.9 of {ROUNDS} x {TICKS} ticks of {PERIOD_US} us at priority {PRIORITY}")
     print("              cyclictest    tapstudy     ratio")
     compare("idle", program)
-    processors = str(os.cpu_count())
-    with tempfile.TemporaryDirectory() as folder:
-        load = subprocess.Popen(["stress-ng", "--cpu", processors, "--hdd", "1", "--hdd-bytes", "64m",
-                                 "--temp-path", folder, "--quiet"])
-        try:
-            compare("stress-ng", program)
-        finally:
-            load.terminate()
-            load.wait()
+    with load.stress_ng():
+        compare("stress-ng", program)
 
 
 main()

@@ -80,9 +80,13 @@ const makers = { likert, scale, number, single_choice: singleChoice, multiple_ch
 const areLabelled = new Set(["number", "text"]);
 
 function titleOf(item, id) {
-  const optional = item.is_required ? null : el("span", { className: "optional" }, ` (${word("optional")})`);
-  if (areLabelled.has(item.kind)) return el("label", { htmlFor: id, className: "question" }, item.question, optional);
-  return el("legend", { className: "question" }, item.question, optional);
+  const notes = [
+    item.kind === "multiple_choice" ? word("one_or_more") : null,
+    item.is_required ? null : word("optional"),
+  ].filter((note) => note !== null);
+  const noted = notes.length === 0 ? null : el("span", { className: "note" }, ` (${notes.join(", ")})`);
+  if (areLabelled.has(item.kind)) return el("label", { htmlFor: id, className: "question" }, item.question, noted);
+  return el("legend", { className: "question" }, item.question, noted);
 }
 
 function clearButton(item, field) {

@@ -102,10 +102,13 @@ void BrowserParticipant::get_ready(const TrialPrompt& prompt) {
 std::int64_t BrowserParticipant::show_trial(const TrialPrompt& prompt,
                                             const TrialControl& control) {
   const std::size_t current = control.current();
-  return show({.kind = ScreenKind::trial,
-               .trial = TrialScreen{prompt, current, control.setting(), intervals(control), notice_,
-                                    std::exchange(correction_state_, CorrectionState::none)},
-               .scene = context_.scene(current)});
+  const auto limit_s = prompt.block->explore.max_seconds;
+  return show(
+      {.kind = ScreenKind::trial,
+       .trial = TrialScreen{prompt, current, control.setting(), intervals(control), notice_,
+                            std::exchange(correction_state_, CorrectionState::none),
+                            limit_s ? std::optional{*limit_s - control.time_s()} : std::nullopt},
+       .scene = context_.scene(current)});
 }
 
 std::optional<std::string> BrowserParticipant::perform(const TrialPrompt& prompt,

@@ -32,6 +32,7 @@ Json json_of(const TrialScreen& trial) {
       {"is_tapped_by_script", trial.prompt.block->explore.scripted_taps.has_value()},
       {"current", trial.current},
       {"setting", trial.setting},
+      {"seconds_left", trial.seconds_left ? Json(*trial.seconds_left) : Json{}},
       {"intervals", trial.intervals ? json_of(*trial.intervals) : Json{}},
       {"notice", trial.notice ? json_of(*trial.notice) : Json{}}};
 }

@@ -41,6 +41,7 @@ struct TrialScreen {
   std::optional<IntervalState> intervals{};  // where alternatives come one after the other
   std::optional<TooEarly> notice;
   CorrectionState correction{CorrectionState::none};
+  std::optional<double> seconds_left{};  // to answer in; unset: there is no limit
 };
 struct FeedbackScreen {
   bool is_correct{};

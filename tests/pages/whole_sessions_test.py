@@ -334,6 +334,7 @@ class EveryScreen(WholeSession):
                 browser.wait_for_screen(self.driver, "rest")
                 browser.go_on_by_mouse(self.driver)
             browser.wait_for_screen(self.driver, "trial")
+            self.assertRegex(browser.find(self.driver, "[role=timer]").text, "^([1-4]?[0-9]|50) s left to answer$")
             self.answer_until_accepted(browser.answer_by_mouse, trial)
             browser.wait_for_screen(self.driver, "confidence")
             browser.answer_by_mouse(self.driver, 2)

@@ -1,5 +1,6 @@
 // Screens that are read, not answered: instructions, messages, rests, and what happens between.
 
+import { countdown } from "./countdown.js";
 import { el } from "./dom.js";
 import { markedText } from "./marked_text.js";
 import { word } from "./words.js";
@@ -55,22 +56,22 @@ export function textScreen(screen, { send }) {
 export function restScreen(screen, actions) {
   const rest = textScreen(screen, actions);
   if (!rest.goOn) return rest;
-  const shownMs = performance.now();
-  const secondsLeft = (seconds) => Math.ceil(seconds - (performance.now() - shownMs) / 1000);
+  const minLeft = countdown(screen.min_seconds ?? 0);
   const isEndless = screen.max_seconds === null || screen.max_seconds === undefined;
-  const countdown = el("p", { className: "countdown", id: "countdown" });
-  rest.goOn.before(countdown);
+  const maxLeft = countdown(screen.max_seconds ?? 0);
+  const shown = el("p", { className: "countdown", id: "countdown" });
+  rest.goOn.before(shown);
   let timer = null;
 
   function tick() {
-    const left = secondsLeft(screen.min_seconds ?? 0);
+    const left = minLeft();
     const isOver = rest.goOn.disabled && left <= 0;
     rest.goOn.disabled = left > 0;
     if (left > 0) {
-      countdown.textContent = word("rest_countdown", { seconds: left });
+      shown.textContent = word("rest_countdown", { seconds: left });
       return;
     }
-    countdown.textContent = isEndless ? "" : word("rest_ends", { seconds: Math.max(secondsLeft(screen.max_seconds), 0) });
+    shown.textContent = isEndless ? "" : word("rest_ends", { seconds: maxLeft() });
     if (isOver && timer) actions.say(word("rest_over"));
     if (isEndless) clearInterval(timer);
   }

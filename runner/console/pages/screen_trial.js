@@ -1,6 +1,7 @@
 // A trial: which option is this, or which of several alternatives to feel is the right one.
 
 import { answerField, cardOf, otherAnswer } from "./answer_fields.js";
+import { countdown } from "./countdown.js";
 import { el } from "./dom.js";
 import { goSignal, intervalCard, showInterval } from "./intervals.js";
 import { question } from "./question.js";
@@ -61,6 +62,18 @@ function toHoldStill({ is_tapped_by_script: isScripted }) {
   return isScripted ? [el("p", { className: "hint" }, word("hold_still"))] : [];
 }
 
+// Where an answer must come within a time; it is told anew with each update of the screen.
+function deadline({ seconds_left: seconds }) {
+  if (seconds === null) return { body: [], show: () => {}, leave: () => {} };
+  const element = el("p", { className: "hint countdown", role: "timer" });
+  let left = countdown(seconds);
+  const tick = () => { element.textContent = word("time_left", { seconds: left() }); };
+  const timer = setInterval(tick, 200);
+  tick();
+  const show = ({ seconds_left: now }) => { left = countdown(now); };
+  return { body: [element], show, leave: () => clearInterval(timer) };
+}
+
 // The last answer, as long as it may be corrected.
 function lastAnswer(answers, say, correct) {
   const element = el("details", { className: "previous" },
@@ -85,10 +98,11 @@ export function trialScreen({ trial }, { send, entered, feel, adjust, replay, co
     title: trial.question, besideAlternatives: answers.options.filter((option) => labels.includes(option)).length,
     group, label: labels.at(-1), setting: trial.setting, adjust, say,
   });
+  const limit = deadline(trial);
   const asked = question({
     title: trial.question,
     className: "trial",
-    body: [...toHoldStill(trial), ...presented.body, ...field.body],
+    body: [...limit.body, ...toHoldStill(trial), ...presented.body, ...field.body],
     say,
     answerIn: field.answerIn,
     missing: field.missing,
@@ -111,11 +125,12 @@ export function trialScreen({ trial }, { send, entered, feel, adjust, replay, co
   function update(screen) {
     current = screen.trial.current;
     field.update?.(screen.trial.setting);
+    limit.show(screen.trial);
     if (screen.trial.correction) {
       asked.element.querySelector(".previous")?.removeAttribute("open");
       say(word(`correction_${screen.trial.correction}`));
     }
     presented.show(asked.element, screen.trial);
   }
-  return { ...asked, press, update };
+  return { ...asked, press, update, leave: limit.leave };
 }

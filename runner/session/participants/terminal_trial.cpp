@@ -191,6 +191,9 @@ void TerminalParticipant::get_ready(const TrialPrompt& prompt) {
   }
   say("\nTrial {}{}. {}\n", place_in(prompt.progress),
       prompt.block->is_practice ? " (practice)" : "", prompt.block->question);
+  if (const auto limit_s = prompt.block->explore.max_seconds) {
+    say("  within {:g} s from when it can be felt\n", *limit_s);
+  }
   if (prompt.previous) {
     say("  (to change your last answer, type correct and {})\n",
         expected_correction(prompt.previous->answers));

@@ -122,6 +122,32 @@ TEST_CASE("a form is taken when all that it requires is answered, and nothing el
   CHECK_FALSE(accepts(form, input));
 }
 
+TEST_CASE(
+    "of a form the answer that ends the session is taken alone, and what is not asked is not taken",
+    "[runner][console][forms]") {
+  protocols::Form consent;
+  consent.name = "consent";
+  for (const char* const name : {"agree", "hurt", "where"}) {
+    protocols::FormItem& item = consent.items.emplace_back();
+    item.name = name;
+    item.kind = protocols::ItemKind::single_choice;
+    item.options = {{"yes", "Yes"}, {"no", "No"}};
+  }
+  consent.items[0].ends_session = {"no"};
+  consent.items[2].asked_if = protocols::AnswerCondition{"consent", "hurt", {"yes"}};
+  const Screen screen{.kind = ScreenKind::form, .form = consent};
+  const auto takes = [&](const protocols::FormAnswers& answers) {
+    return accepts(screen, {ScreenAction::form, 0, answers});
+  };
+  CHECK(takes({{"agree", "no"}}));
+  CHECK_FALSE(takes({{"agree", "no"}, {"hurt", "no"}}));
+  CHECK_FALSE(takes({{"agree", "yes"}}));
+  CHECK(takes({{"agree", "yes"}, {"hurt", "no"}}));
+  CHECK_FALSE(takes({{"agree", "yes"}, {"hurt", "no"}, {"where", "no"}}));
+  CHECK_FALSE(takes({{"agree", "yes"}, {"hurt", "yes"}}));
+  CHECK(takes({{"agree", "yes"}, {"hurt", "yes"}, {"where", "no"}}));
+}
+
 TEST_CASE("what is no input is refused, whatever it is", "[runner][console]") {
   std::int64_t screen = 0;
   CHECK(parse_input(R"({"screen":7,"action":"switch","value":1})", screen).value == 1);

@@ -53,6 +53,7 @@ struct FormItem {
   std::vector<Option> options;              // single_choice, multiple_choice
   std::optional<AnswerCondition> asked_if;  // on an earlier item; unset: it is always asked
   std::vector<std::string> ends_session;    // answers after which the participant takes no part
+  std::string bids;                         // the column of participants.tsv; empty: none
 };
 
 // A questionnaire: asked before the first trial, after a block, or at the end of a session.

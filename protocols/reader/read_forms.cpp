@@ -1,8 +1,11 @@
 // Questionnaires, and what answers to them decide.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "protocols/form.hpp"
@@ -50,9 +53,9 @@ void read_answers(MapReader& reader, const Form* form, AnswerCondition& conditio
     return;
   }
   const auto item = items.find(condition.item);
-  condition.answers = reader.words(
-      {"is", "answers, one of which must be given or among the choices"}, "answer",
-      item == items.end() ? std::vector<std::string>{} : known_answers(item->second));
+  condition.answers =
+      reader.words({"is", "answers, one of which must be given or among the choices"}, "answer",
+                   item == items.end() ? std::vector<std::string>{} : known_answers(item->second));
 }
 
 // The same of a form that is one of these.
@@ -113,6 +116,52 @@ void read_ending(MapReader& reader, FormItem& item) {
   }
 }
 
+// The columns of participants.tsv that the Brain Imaging Data Structure (1.8) defines, and their
+// values; a value may also be its first letter, in capitals, or begin with one.
+struct BidsColumn {
+  const char* name;
+  std::vector<std::string> values;  // empty: a number
+};
+const std::vector<BidsColumn>& bids_columns() {
+  static const std::vector<BidsColumn> columns{{"age", {}},
+                                               {"sex", {"male", "female", "other"}},
+                                               {"handedness", {"left", "right", "ambidextrous"}}};
+  return columns;
+}
+
+bool is_value_of(const BidsColumn& column, const std::string& option) {
+  std::string small = option;
+  std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::ranges::any_of(column.values, [&](const std::string& value) {
+    return small == value || small == value.substr(0, 1);
+  });
+}
+
+void read_bids(MapReader& reader, FormItem& item) {
+  std::vector<std::string> names;
+  std::ranges::transform(bids_columns(), std::back_inserter(names), &BidsColumn::name);
+  item.bids = reader.word({"bids",
+                           "number: age, in years; single_choice: sex (male, female, other) or "
+                           "handedness (left, right, ambidextrous; options are these words or "
+                           "their first letters): a column of participants.tsv in exports to BIDS"},
+                          "column", names, "");
+  const auto column = std::ranges::find(bids_columns(), item.bids, &BidsColumn::name);
+  if (column == bids_columns().end()) {
+    return;
+  }
+  const bool is_number = column->values.empty();
+  if (item.kind != (is_number ? ItemKind::number : ItemKind::single_choice)) {
+    reader.reject("bids",
+                  fmt::format("'{}' is of an item of kind {}", item.bids,
+                              name(is_number ? ItemKind::number : ItemKind::single_choice)));
+  } else if (!std::ranges::all_of(item.options, [&](const Option& option) {
+               return is_value_of(*column, option.name);
+             })) {
+    reader.reject("options", fmt::format("are not all among {}, as bids: {} has them",
+                                         fmt::join(column->values, ", "), item.bids));
+  }
+}
+
 FormItem read_item(MapReader& reader, const Form& form, const Protocol& protocol) {
   constexpr double any = 1e12;
   FormItem item;
@@ -147,6 +196,7 @@ FormItem read_item(MapReader& reader, const Form& form, const Protocol& protocol
   if (item.kind == ItemKind::single_choice || item.kind == ItemKind::multiple_choice) {
     read_options(reader, item);
   }
+  read_bids(reader, item);
   item.asked_if = read_asked_if(reader, form, protocol);
   if (has_name) {
     read_ending(reader, item);
@@ -199,6 +249,16 @@ void check_is_asked_before(MapReader& top, const Protocol& protocol) {
     }
   }
 }
+void check_bids_columns(MapReader& top, const Protocol& protocol) {
+  std::set<std::string> filled;
+  for (const auto& [name, form] : protocol.forms) {
+    for (const FormItem& item : form.items) {
+      if (!item.bids.empty() && !filled.insert(item.bids).second) {
+        top.reject("forms", fmt::format("bids: {} is given for two items", item.bids));
+      }
+    }
+  }
+}
 }  // namespace
 
 void read_forms(MapReader& top, Protocol& protocol) {
@@ -211,6 +271,7 @@ void read_forms(MapReader& top, Protocol& protocol) {
   protocol.forms_after =
       read_form_names(top, {"forms_after", "names of forms, asked after the last trial"}, protocol);
   check_is_asked_before(top, protocol);
+  check_bids_columns(top, protocol);
 }
 
 std::optional<AnswerCondition> read_presented_if(MapReader& block_reader,

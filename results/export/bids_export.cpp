@@ -135,9 +135,15 @@ class Dataset {
     const std::vector<Column> own =
         known_columns(has_groups ? "participant_id mode is_excluded group_name"
                                  : "participant_id mode is_excluded");
+    const std::vector<ParticipantsColumn> asked = participants_columns(*store_, study_->forms);
     each_row(*store_, own, "v_sessions GROUP BY participant_id ORDER BY min(session_id)",
              [&](Statement& statement, Row row) {
-               row.front() = "sub-" + labels_.participants.by_name.at(statement.text(0));
+               const std::string participant = statement.text(0);
+               row.front() = "sub-" + labels_.participants.by_name.at(participant);
+               for (const ParticipantsColumn& column : asked) {
+                 const auto answer = column.answers.find(participant);
+                 row.push_back(answer == column.answers.end() ? Cell{} : Cell{answer->second});
+               }
                lines += tsv_line(row);
              });
     std::vector<DescribedColumn> described;
@@ -146,6 +152,10 @@ class Dataset {
       column.name = column.name == "group_name" ? "group" : column.name;  // as BIDS has it
       header.emplace_back(column.name);
       described.push_back({column});
+    }
+    for (const ParticipantsColumn& column : asked) {
+      header.emplace_back(column.column.column.name);
+      described.push_back(column.column);
     }
     core::write_new_file(root_ / "participants.tsv", tsv_line(header) + lines);
     core::write_new_file(root_ / "participants.json", table_sidecar(described));

@@ -289,6 +289,32 @@ std::string name_of(const Asked& asked, const std::vector<Asked>& all) {
 }
 }  // namespace
 
+std::vector<ParticipantsColumn> participants_columns(Store& store,
+                                                     const std::vector<FormText>& forms) {
+  std::vector<ParticipantsColumn> columns;
+  for (const FormText& form : forms) {
+    for (const ItemText& item : form.items) {
+      if (item.participants_column.empty()) {
+        continue;
+      }
+      const bool is_age = item.participants_column == "age";
+      ParticipantsColumn own{
+          {{item.participants_column, CellType::text, is_age ? "year" : "", item.question},
+           item.levels},
+          {}};
+      Statement row = store.query(
+          "SELECT participant_id, answer FROM form_answer JOIN session USING (session_id) "
+          "WHERE form = ? AND item = ? AND answer IS NOT NULL ORDER BY form_answer.rowid");
+      row.bind(form.name).bind(item.name);
+      while (row.step()) {
+        own.answers[row.text(0)] = row.text(1);
+      }
+      columns.push_back(std::move(own));
+    }
+  }
+  return columns;
+}
+
 std::vector<Phenotype> phenotypes(Store& store, const std::vector<FormText>& forms,
                                   const std::map<std::string, std::string>& labels) {
   const std::vector<Asked> all = all_asked(store);

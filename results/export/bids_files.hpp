@@ -44,6 +44,14 @@ struct BlockEvents {
 std::vector<BlockEvents> events_of_blocks(Store& store);
 std::vector<DescribedColumn> event_columns();
 
+// A column of participants.tsv that an item of a questionnaire fills.
+struct ParticipantsColumn {
+  DescribedColumn column;
+  std::map<std::string, std::string> answers;  // the latest, by participant
+};
+std::vector<ParticipantsColumn> participants_columns(Store& store,
+                                                     const std::vector<FormText>& forms);
+
 // A questionnaire as a measurement tool of BIDS, asked at one place of the session.
 struct Phenotype {
   std::string name;  // of its files, without ending: letters, digits and '_'

@@ -46,6 +46,7 @@ struct ItemText {
   std::string question;
   std::vector<Level> levels;  // answers that have a meaning; empty: a number or a text
   bool is_free_text{};
+  std::string participants_column{};  // of participants.tsv in BIDS; empty: none
 };
 struct FormText {
   std::string name;

@@ -67,8 +67,8 @@ std::vector<results::FormText> form_texts(const protocols::Protocol& protocol) {
   for (const auto& [name, form] : protocol.forms) {
     results::FormText text{name, form.title, {}};
     for (const protocols::FormItem& item : form.items) {
-      text.items.push_back(
-          {item.name, item.question, levels_of(item), item.kind == protocols::ItemKind::text});
+      text.items.push_back({item.name, item.question, levels_of(item),
+                            item.kind == protocols::ItemKind::text, item.bids});
     }
     texts.push_back(std::move(text));
   }

@@ -125,30 +125,31 @@ void BetweenTrials::read(const std::string& text, const std::string& whose) {
 
 void BetweenTrials::ask(const std::vector<std::string>& forms, const std::string& asked) {
   for (const std::string& name : forms) {
-    if (!parts_.participant.fills_in_forms() || asked_.contains({name, asked})) {
-      continue;
-    }
     const protocols::Form form = form_after(parts_.protocol.forms.at(name), filled_);
-    if (form.items.empty()) {
-      continue;
+    if (parts_.participant.fills_in_forms() && !asked_.contains({name, asked}) &&
+        !form.items.empty()) {
+      ask(form, asked);
     }
-    parts_.wait_while_paused();
-    parts_.states.enter(SessionState::form, {}, name);
-    const protocols::FormAnswers answers = parts_.participant.fill_in(form);
-    const auto ending = item_that_ends(form, answers);
-    std::vector<results::FormAnswerRow> rows;
-    for (const protocols::FormItem& item :
-         ending ? std::vector{*ending} : asked_items(form, answers)) {
-      const auto answer = answers.find(item.name);
-      rows.push_back({0, 0.0, name, asked, item.name,
-                      answer == answers.end() ? std::nullopt : std::optional{answer->second}});
-    }
-    parts_.save_form(std::move(rows));
-    if (ending) {
-      throw TookNoPart{protocols::describe({name, ending->name, {answers.at(ending->name)}})};
-    }
-    asked_.emplace(name, asked);
-    filled_[name] = answers;
   }
+}
+
+void BetweenTrials::ask(const protocols::Form& form, const std::string& asked) {
+  parts_.wait_while_paused();
+  parts_.states.enter(SessionState::form, {}, form.name);
+  const protocols::FormAnswers answers = parts_.participant.fill_in(form);
+  const auto ending = item_that_ends(form, answers);
+  std::vector<results::FormAnswerRow> rows;
+  for (const protocols::FormItem& item :
+       ending ? std::vector{*ending} : asked_items(form, answers)) {
+    const auto answer = answers.find(item.name);
+    rows.push_back({0, 0.0, form.name, asked, item.name,
+                    answer == answers.end() ? std::nullopt : std::optional{answer->second}});
+  }
+  parts_.save_form(std::move(rows));
+  if (ending) {
+    throw TookNoPart{protocols::describe({form.name, ending->name, {answers.at(ending->name)}})};
+  }
+  asked_.emplace(form.name, asked);
+  filled_[form.name] = answers;
 }
 }  // namespace tapstudy::runner

@@ -65,7 +65,9 @@ class BetweenTrials {
   void read(const std::string& text, const std::string& whose);
   void introduce(const protocols::Block& block);
   void rest_if_due(const protocols::Block& block);
+  // Of these forms what is asked now and was not asked here before.
   void ask(const std::vector<std::string>& forms, const std::string& asked);
+  void ask(const protocols::Form& form, const std::string& asked);
   Parts parts_;
   std::set<std::pair<std::string, std::string>> asked_;  // forms, and where
   protocols::FilledForms filled_;

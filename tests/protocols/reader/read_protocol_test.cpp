@@ -508,6 +508,10 @@ TEST_CASE("a condition on an answer that nobody can have given is one error",
        "    presented_if: {form: rating, item: real, is: [1]}\n    instructions: Now",
        "'rating' is not a known form of forms_before"},
       {"[a stylus, a glove", "[a stylus; a pen, a glove", "stands between the choices"},
+      {"[left, right]", "[left, none]", "are not all among left, right, ambidextrous"},
+      {"required: false, bids: age", "required: false, bids: sex", "of kind single_choice"},
+      {"kind: text, question: \"What else?\"",
+       "bids: age, kind: number, min: 0, max: 1, question: \"What else?\"", "for two items"},
   }));
   INFO(from << " → " << to);
   const std::string error = refusal(testing::replaced(

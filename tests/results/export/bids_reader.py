@@ -61,9 +61,20 @@ def main(study, dataset):
     labels = dict(zip([row[0] for row in database.execute(
         "SELECT participant_id FROM v_sessions GROUP BY participant_id ORDER BY min(session_id)")],
         participants["participant_id"]))
+    compare_participants(database, participants.set_index("participant_id"), labels)
     print(trials, "trials", recordings, "recordings",
           compared_answers(database, dataset, labels), "answers",
           compared_events(database, dataset), "events")
+
+
+def compare_participants(database, participants, labels):
+    """Age and handedness are asked by the form 'about' of every_screen.yaml."""
+    for column, item in (("age", "age"), ("handedness", "hand")):
+        asked = dict(database.execute("SELECT participant_id, answer FROM form_answer JOIN v_sessions USING (session_id) "
+                                      "WHERE item = ?", (item,)))
+        assert asked
+        for person, label in labels.items():
+            assert participants.loc[label, column] == (asked.get(person) or "n/a"), (person, column)
 
 
 def compared_answers(database, dataset, labels):

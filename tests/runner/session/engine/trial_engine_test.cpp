@@ -389,6 +389,7 @@ TEST_CASE("a block's questionnaire that an interruption left open is asked befor
     std::vector<std::string>& done_;
   };
   protocols::Protocol protocol;
+  protocol.forms["load"].name = "load";
   protocol.forms["load"].title = "form";
   protocol.forms["load"].items.emplace_back().is_required = false;
   for (const char* const name : {"first", "second"}) {

@@ -61,14 +61,16 @@ def main(study, dataset):
     labels = dict(zip([row[0] for row in database.execute(
         "SELECT participant_id FROM v_sessions GROUP BY participant_id ORDER BY min(session_id)")],
         participants["participant_id"]))
-    compare_participants(database, participants.set_index("participant_id"), labels)
+    compare_participants(database, dataset, labels)
     print(trials, "trials", recordings, "recordings",
           compared_answers(database, dataset, labels), "answers",
           compared_events(database, dataset), "events")
 
 
-def compare_participants(database, participants, labels):
+def compare_participants(database, dataset, labels):
     """Age and handedness are asked by the form 'about' of every_screen.yaml."""
+    participants = pandas.read_csv(f"{dataset}/participants.tsv", sep="\t", dtype=str,
+                                   keep_default_na=False).set_index("participant_id")
     for column, item in (("age", "age"), ("handedness", "hand")):
         asked = dict(database.execute("SELECT participant_id, answer FROM form_answer JOIN v_sessions USING (session_id) "
                                       "WHERE item = ?", (item,)))

@@ -10,6 +10,7 @@
 
 #include "analysis/modal/decay/decay_band.hpp"
 #include "analysis/modal/decay/resting_pole_fit.hpp"
+#include "analysis/modal/modes/one_resonance.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -21,7 +22,6 @@ constexpr double reach_bandwidths = 4.0;
 constexpr double most_reach = 0.15;
 constexpr double around_reach = 1.5;
 constexpr double least_bins = 24.0;
-constexpr double series_ratio = 1.6;
 constexpr double explains_as_much = 1.05;  // of the noise
 constexpr std::array<int, 5> numbers_of_terms{1, 2, 3, 4, 6};
 
@@ -277,7 +277,6 @@ namespace {
 // A room's and a table's first reflections have come by then; later on weak modes are lost.
 constexpr std::array<double, 3> delays_s{0.0, 0.006, 0.012};
 constexpr double as_well = 1.15;
-constexpr double blow_s = 0.012;
 
 // For one mode, by the decays that begin so much later in turn.
 double settled_for(const RepeatedMode& mode, const std::vector<std::vector<FreeDecay>>& later,
@@ -328,6 +327,24 @@ double settled_after_s(const std::vector<FreeDecay>& decays, const std::vector<i
     settled_s = std::max(settled_s, settled_for(mode, later, impacts, band, found));
   }
   return settled_s;
+}
+
+std::vector<RepeatedMode> died_before(double after_s, const std::vector<RepeatedMode>& first,
+                                      const std::vector<RepeatedMode>& later) {
+  constexpr double least_fall = 0.4;  // nepers
+  const auto bandwidth_hz = [](const RepeatedMode& mode) {
+    return 2.0 * std::abs(mode.damping_ratio.value) * centre_of(mode);
+  };
+  std::vector<RepeatedMode> died;
+  std::ranges::copy_if(first, std::back_inserter(died), [&](const RepeatedMode& mode) {
+    return mode.standing == Standing::agreed &&
+           std::numbers::pi * bandwidth_hz(mode) * after_s > least_fall &&
+           std::ranges::none_of(later, [&](const RepeatedMode& other) {
+             return may_be_mode(other) && std::abs(centre_of(other) - centre_of(mode)) <
+                                              bandwidth_hz(mode) + bandwidth_hz(other);
+           });
+  });
+  return died;
 }
 
 std::vector<RepeatedMode> distinct_modes(const std::vector<FreeDecay>& decays,

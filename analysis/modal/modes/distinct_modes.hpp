@@ -18,5 +18,11 @@ std::vector<RepeatedMode> distinct_modes(const std::vector<FreeDecay>& decays,
 // %).
 double settled_after_s(const std::vector<FreeDecay>& decays, const std::vector<int>& impacts,
                        const Band& band, const ModesOfTaps& found);
+// A blow with its reflections and the striker's touch.
+inline constexpr double blow_s = 0.012;
+// Agreed modes that had died away by then (by a third at least) and are missing among what the
+// later decays show: nothing later lies within their half-power bandwidth and its own.
+std::vector<RepeatedMode> died_before(double after_s, const std::vector<RepeatedMode>& first,
+                                      const std::vector<RepeatedMode>& later);
 FreeDecay begun_later(const FreeDecay& decay, double after_s);
 }  // namespace tapstudy::analysis

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "analysis/modal/modes/distinct_modes.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -35,6 +36,11 @@ std::string uncertainty_of(const RepeatedMode& mode) {
   if (!(width(mode.frequency_hz.interval) <= widest_frequency * hz(mode))) {
     return fmt::format("its frequency is anything from {:.4g} to {:.4g} Hz",
                        mode.frequency_hz.interval.low, mode.frequency_hz.interval.high);
+  }
+  const double fall_a_period = 2.0 * std::numbers::pi * mode.damping_ratio.value;
+  if (fall_a_period * min_periods > 1.0 && fall_a_period * hz(mode) * blow_s > 1.0) {
+    return fmt::format("dies away in fewer than {:g} periods and sooner than a blow is over",
+                       min_periods);
   }
   return {};
 }
@@ -158,13 +164,20 @@ std::string made_of(const RepeatedMode& mode, const RepeatedMode& one, const Rep
                         : sum_of(mode, line_of(one), line_of(other));
 }
 
-std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedMode>& modes) {
+std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedMode>& modes,
+                           int derivatives) {
   const auto is_stronger = [&](const RepeatedMode& other) {
     return is_listed(other) && mode.amplitude < combination_weakness * other.amplitude;
   };
+  const auto modulates = [&](const RepeatedMode& other) {
+    const double as_displacement = std::pow(hz(mode) / hz(other), derivatives);
+    return is_listed(other) &&
+           mode.amplitude < combination_weakness * as_displacement * other.amplitude;
+  };
   for (const RepeatedMode& one : modes) {
     for (const RepeatedMode& other : modes) {
-      if (is_stronger(one) && is_stronger(other)) {
+      const bool is_strong = is_stronger(other) || (&one != &other && modulates(other));
+      if (is_stronger(one) && is_strong) {
         if (std::string made = made_of(mode, one, other); !made.empty()) {
           return made;
         }
@@ -175,10 +188,11 @@ std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedM
 }
 }  // namespace
 
-void mark_combinations(std::vector<RepeatedMode>& modes) {
+void mark_combinations(std::vector<RepeatedMode>& modes, int derivatives) {
   const std::vector<RepeatedMode> before = modes;
   for (RepeatedMode& mode : modes) {
-    const std::string made = is_listed(mode) ? combination_of(mode, before) : std::string{};
+    const std::string made =
+        is_listed(mode) ? combination_of(mode, before, derivatives) : std::string{};
     if (!made.empty()) {
       mode.standing = Standing::combination;
       mode.why = made;

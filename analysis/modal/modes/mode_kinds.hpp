@@ -10,9 +10,10 @@ inline constexpr double min_periods = 3.0;
 inline constexpr double widest_frequency = 0.1;
 
 // What is listed as a mode is certain to be one: agreed ones become doubtful whose damping interval
-// holds 0 or whose frequency interval is wider than widest_frequency, with a reason. What makes
-// fewer than min_periods in a decay of this length becomes background (unless it is a line), and
-// so does what grows below the weakest mode's frequency.
+// holds 0 or whose frequency interval is wider than widest_frequency, with a reason, and those that
+// are the blow's own pulse as likely: they die away in fewer than min_periods and sooner than a
+// blow is over (blow_s). What makes fewer than min_periods in a decay of this length becomes
+// background (unless it is a line), and so does what grows below the weakest mode's frequency.
 void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes);
 
 // The amplitude of one tone with the power that a sensor shows at rest around a frequency (from two
@@ -26,8 +27,10 @@ void mark_background(const std::vector<FreeDecay>& rests, std::vector<RepeatedMo
 // contact, an overdriven amplifier), the products of two decaying motions decay by the sum of their
 // rates. What lies at a multiple n f of one stronger mode, or at f ± n g of two, decays at that
 // rate, both within the intervals or combination_tolerance, and is weaker by
-// combination_weakness, is a combination. Modes in ascending frequency.
-void mark_combinations(std::vector<RepeatedMode>& modes);
+// combination_weakness, is a combination. A slow motion g that modulates a fast one need only be
+// stronger as a displacement, of which `derivatives` were measured (2: acceleration). Modes in
+// ascending frequency.
+void mark_combinations(std::vector<RepeatedMode>& modes, int derivatives = 0);
 
 // What is not listed among the modes, one sentence a kind: "11 components below 40 Hz: hum or
 // handling".

@@ -11,6 +11,7 @@
 #include "analysis/modal/modes/close_modes.hpp"
 #include "analysis/modal/modes/distinct_modes.hpp"
 #include "analysis/modal/modes/mode_kinds.hpp"
+#include "analysis/modal/modes/one_resonance.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::runner {
@@ -182,10 +183,23 @@ void begin_later(double after_s, std::vector<IdentifiedTap>& taps, TapRemarks& r
          {}});
   }
 }
+// How often displacement was differentiated.
+int derivatives_of(analysis::Quantity quantity) {
+  switch (quantity) {
+    case analysis::Quantity::acceleration:
+      return 2;
+    case analysis::Quantity::velocity:
+      return 1;
+    case analysis::Quantity::displacement:
+      break;
+  }
+  return 0;
+}
 }  // namespace
 
 std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
                                                    std::vector<IdentifiedTap>& taps,
+                                                   analysis::Quantity quantity,
                                                    TapRemarks& remarks) {
   analysis::ModesOfTaps found = found_in_parts(band, taps, remarks);
   if (taps.empty()) {
@@ -193,20 +207,26 @@ std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
   }
   const double settled_s =
       analysis::settled_after_s(decays_of(taps), impacts_of(taps), band, found);
+  std::vector<analysis::RepeatedMode> died;
   if (settled_s > 0.0) {
+    const std::vector<analysis::RepeatedMode> first = found.modes;
     begin_later(settled_s, taps, remarks);
     found = found_in_parts(band, taps, remarks);
     if (taps.empty()) {
       return {};
     }
+    died = analysis::died_before(settled_s, first, found.modes);
   }
   std::vector<analysis::RepeatedMode> modes =
       analysis::distinct_modes(decays_of(taps), impacts_of(taps), band, found);
+  analysis::join_resonances(decays_of(taps), modes);
+  modes.insert(modes.end(), died.begin(), died.end());
+  std::ranges::sort(modes, {}, [](const auto& mode) { return mode.frequency_hz.value; });
   std::vector<analysis::FreeDecay> rests;
   std::ranges::transform(taps, std::back_inserter(rests), &IdentifiedTap::rest);
   analysis::mark_background(rests, modes);
   analysis::judge_certainty(median_duration_s(taps), modes);
-  analysis::mark_combinations(modes);
+  analysis::mark_combinations(modes, derivatives_of(quantity));
   return modes;
 }
 }  // namespace tapstudy::runner

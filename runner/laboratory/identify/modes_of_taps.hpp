@@ -19,9 +19,10 @@ analysis::Band band_of_sinusoid(const analysis::Band& sought, double rate_hz);
 
 // Sets the taps' modes and returns those over all taps and channels, ascending frequency, with
 // what each of them is. Steady tones that only some taps show are fitted in the others, too, and
-// close modes are told apart by all taps together. Taps that are too short for the band are left
-// out, with a remark: none may be left.
+// close modes are told apart by all taps together, or joined where nothing tells them apart. Taps
+// that are too short for the band are left out, with a remark: none may be left.
 std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
                                                    std::vector<IdentifiedTap>& taps,
+                                                   analysis::Quantity quantity,
                                                    TapRemarks& remarks);
 }  // namespace tapstudy::runner

@@ -183,7 +183,8 @@ class Identifier {
                                 protocol_ ? std::optional{protocol_->band_limit_hz} : std::nullopt,
                                 result_.remarks);
       hook_("modes");
-      result_.modes = modes_over_all(result_.band, result_.taps, tap_remarks_);
+      result_.modes =
+          modes_over_all(result_.band, result_.taps, result_.question.quantity, tap_remarks_);
     }
     if (result_.taps.empty()) {
       add_remarks(tap_remarks_.sentences(impacts_));

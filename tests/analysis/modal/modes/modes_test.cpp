@@ -11,6 +11,7 @@
 #include "analysis/modal/modes/mode_kinds.hpp"
 #include "analysis/modal/modes/mode_shapes.hpp"
 #include "analysis/modal/modes/model_matching.hpp"
+#include "analysis/modal/modes/one_resonance.hpp"
 #include "analysis/modal/modes/repeated_modes.hpp"
 #include "core/random/rng.hpp"
 #include "support/catch.hpp"
@@ -454,6 +455,85 @@ TEST_CASE("products of two motions are marked by their frequency and by their de
   CHECK(modes[3].standing == Standing::agreed);  // decays three times as fast as a product does
   CHECK(modes[4].standing == Standing::combination);
   CHECK(modes[5].standing == Standing::agreed);  // as strong as what would make it
+}
+
+TEST_CASE("a slow motion that is weak only as an acceleration modulates a fast one",
+          "[analysis][modal]") {
+  const double product_hz = 1500.0 + 80.0;
+  const std::vector<RepeatedMode> modes{
+      certain_mode(80.0, 0.002, 0.1), certain_mode(1500.0, 0.002, 1.0),
+      certain_mode(product_hz, 0.002 * (1500.0 + 80.0) / product_hz, 0.1)};
+  std::vector<RepeatedMode> as_displacement = modes;
+  mark_combinations(as_displacement, 0);
+  CHECK(as_displacement[2].standing == Standing::agreed);
+  std::vector<RepeatedMode> as_acceleration = modes;  // 390 times as strong a displacement
+  mark_combinations(as_acceleration, 2);
+  CHECK(as_acceleration[2].standing == Standing::combination);
+  CHECK(as_acceleration[1].standing == Standing::agreed);
+}
+
+namespace {
+// Decays of a mode at 300 Hz and of a component next to it, with such amplitudes.
+std::vector<RepeatedMode> joined_from(const std::vector<Shares>& shares, double ratio_beside) {
+  std::vector<FreeDecay> decays;
+  core::Rng rng{8};
+  for (const Shares& seen : shares) {
+    decays.push_back(testing::planted_decay(
+        {{{300.0, 0.004}, seen.first}, {{301.0, ratio_beside}, seen.second}}, 3000.0, 0.5));
+    for (double& sample : decays.back().samples) {
+      sample += 0.005 * rng.normal();
+    }
+  }
+  std::vector<RepeatedMode> modes{certain_mode(300.0, 0.004, 0.8),
+                                  certain_mode(301.0, ratio_beside, 0.3)};
+  join_resonances(decays, modes);
+  return modes;
+}
+const std::vector<Shares> in_proportion{{0.5, 0.15}, {0.7, 0.21}, {1.0, 0.3}, {0.6, 0.18}};
+}  // namespace
+
+TEST_CASE("what overlaps a mode, dies away sooner and follows its amplitude is a part of it",
+          "[analysis][modal]") {
+  const std::vector<RepeatedMode> modes = joined_from(in_proportion, 0.014);
+  CHECK(modes[0].standing == Standing::agreed);
+  CHECK(modes[1].standing == Standing::doubtful);
+  CHECK_THAT(modes[1].why, Contains("300 Hz"));
+}
+
+TEST_CASE("overlapping modes stay two where places or sensors see them in other proportions",
+          "[analysis][modal]") {
+  const std::vector<RepeatedMode> modes =
+      joined_from({{0.8, 0.3}, {0.3, 0.8}, {0.7, -0.5}, {0.1, 0.6}}, 0.014);
+  CHECK(modes[0].standing == Standing::agreed);
+  CHECK(modes[1].standing == Standing::agreed);
+}
+
+TEST_CASE("two modes that die away alike are no series of one, in whatever proportion",
+          "[analysis][modal]") {
+  const std::vector<RepeatedMode> modes = joined_from(in_proportion, 0.005);
+  CHECK(modes[0].standing == Standing::agreed);
+  CHECK(modes[1].standing == Standing::agreed);
+}
+
+TEST_CASE("a mode that has died away when later decays begin is kept", "[analysis][modal]") {
+  const std::vector<RepeatedMode> first{certain_mode(300.0, 0.004, 1.0),
+                                        certain_mode(310.0, 0.03, 1.0),
+                                        certain_mode(900.0, 0.02, 1.0)};
+  const std::vector<RepeatedMode> later{certain_mode(301.0, 0.004, 1.0)};
+  const std::vector<RepeatedMode> died = died_before(0.012, first, later);
+  REQUIRE(died.size() == 1);  // 310 Hz overlaps what is seen later, 300 Hz is that
+  CHECK(died.front().frequency_hz.value == 900.0);
+  CHECK(died_before(0.001, first, later).empty());
+}
+
+TEST_CASE("what is over in three periods and within a blow is as likely the blow's pulse",
+          "[analysis][modal]") {
+  std::vector<RepeatedMode> modes{certain_mode(150.0, 0.08, 1.0), certain_mode(1500.0, 0.04, 1.0),
+                                  certain_mode(1600.0, 0.08, 1.0)};
+  judge_certainty(0.5, modes);
+  CHECK(modes[0].standing == Standing::agreed);  // outlasts a blow
+  CHECK(modes[1].standing == Standing::agreed);  // four periods
+  CHECK(modes[2].standing == Standing::doubtful);
 }
 
 TEST_CASE("what is as strong at rest as in the taps is no answer to them", "[analysis][modal]") {

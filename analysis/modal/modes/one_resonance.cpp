@@ -1,0 +1,144 @@
+#include "analysis/modal/modes/one_resonance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+
+#include "analysis/modal/decay/decay_band.hpp"
+#include "analysis/modal/decay/decay_model.hpp"
+#include "analysis/modal/modes/distinct_modes.hpp"
+#include "core/error.hpp"
+namespace tapstudy::analysis {
+namespace {
+constexpr double around_bandwidths = 8.0;
+constexpr double around_share = 0.04;
+constexpr double least_bins_around = 24.0;
+
+double frequency_hz_of(const RepeatedMode& mode) {
+  return mode.frequency_hz.value;
+}
+double halfwidth_hz(const RepeatedMode& mode) {
+  return mode.damping_ratio.value * frequency_hz_of(mode);
+}
+double decay_rate_of(const RepeatedMode& mode) {
+  return 2.0 * std::numbers::pi * halfwidth_hz(mode);
+}
+
+bool may_be_part(const RepeatedMode& mode) {
+  return (mode.standing == Standing::agreed || mode.standing == Standing::doubtful) &&
+         mode.damping_ratio.value > 0.0;
+}
+
+// What dies away within a blow and its reflections is as wide as they make it.
+bool overlap(const RepeatedMode& a, const RepeatedMode& b) {
+  const bool is_short = blow_s * std::max(decay_rate_of(a), decay_rate_of(b)) > 1.0;
+  return std::abs(frequency_hz_of(a) - frequency_hz_of(b)) <
+         (is_short ? 2.0 : 1.0) * (halfwidth_hz(a) + halfwidth_hz(b));
+}
+
+bool is_series_or_weak(const RepeatedMode& a, const RepeatedMode& b) {
+  const auto [slow, fast] = std::minmax({decay_rate_of(a), decay_rate_of(b)});
+  const auto [weak, strong] = std::minmax({a.amplitude, b.amplitude});
+  return fast > series_ratio * slow || weak < weakest_sought * strong;
+}
+
+// The complex amplitudes of two components in each decay at its first sample, their neighbours
+// taken into account; decays that are too short are left out.
+struct PairAmplitudes {
+  Eigen::VectorXcd one;
+  Eigen::VectorXcd other;
+};
+
+Band band_around(const RepeatedMode& a, const RepeatedMode& b, const FreeDecay& decay) {
+  const double reach_hz =
+      std::max({around_bandwidths * std::max(halfwidth_hz(a), halfwidth_hz(b)),
+                around_share * frequency_hz_of(a), least_bins_around / 2.0 / decay.duration_s()});
+  return {
+      std::max(1.0 / decay.duration_s(),
+               std::min(frequency_hz_of(a), frequency_hz_of(b)) - reach_hz),
+      std::min(0.47 * decay.rate_hz, std::max(frequency_hz_of(a), frequency_hz_of(b)) + reach_hz)};
+}
+
+std::complex<double> amplitude_of(const DecayModel::State& state, Eigen::Index pole) {
+  return {state.shares[2 * pole], -state.shares[2 * pole + 1]};
+}
+
+PairAmplitudes amplitudes(const RepeatedMode& a, const RepeatedMode& b,
+                          const std::vector<FreeDecay>& decays,
+                          const std::vector<RepeatedMode>& modes) {
+  std::vector<std::complex<double>> of_a;
+  std::vector<std::complex<double>> of_b;
+  for (const FreeDecay& decay : decays) {
+    const Band near = band_around(a, b, decay);
+    std::vector<Pole> poles{{frequency_hz_of(a), a.damping_ratio.value},
+                            {frequency_hz_of(b), b.damping_ratio.value}};
+    for (const RepeatedMode& mode : modes) {
+      if (&mode != &a && &mode != &b && mode.standing == Standing::agreed &&
+          near.holds(frequency_hz_of(mode))) {
+        poles.push_back({frequency_hz_of(mode), mode.damping_ratio.value});
+      }
+    }
+    try {
+      const BandSpectrum spectrum = band_spectrum(decay, near);
+      const DecayModel model{spectrum, std::ssize(poles), {}};
+      if (model.data().size() > model.unknowns()) {
+        const DecayModel::State state = model.at(model.logs_of(poles));
+        of_a.push_back(amplitude_of(state, 0));
+        of_b.push_back(amplitude_of(state, 1));
+      }
+    } catch (const core::InvalidInput&) {
+      continue;
+    }
+  }
+  return {Eigen::Map<Eigen::VectorXcd>{of_a.data(), std::ssize(of_a)},
+          Eigen::Map<Eigen::VectorXcd>{of_b.data(), std::ssize(of_b)}};
+}
+
+// The modal assurance of complex shapes.
+double assurance(const PairAmplitudes& pair) {
+  const double size = pair.one.squaredNorm() * pair.other.squaredNorm();
+  return size > 0.0 ? std::norm(pair.one.dot(pair.other)) / size : 0.0;
+}
+
+// Of the part of a decay after its first sample, up to a factor that both have.
+double energy_of(const Eigen::VectorXcd& amplitudes, const RepeatedMode& mode) {
+  return amplitudes.squaredNorm() / decay_rate_of(mode);
+}
+
+void join(RepeatedMode& kept, RepeatedMode& part) {
+  if (part.standing == Standing::agreed && kept.taps >= part.taps) {
+    kept.standing = Standing::agreed;
+    kept.agreed = std::max(kept.agreed, part.agreed);
+    kept.why = {};
+  }
+  part.standing = Standing::doubtful;
+  part.why = fmt::format("overlaps the mode at {:.5g} Hz and follows its amplitude",
+                         frequency_hz_of(kept));
+}
+}  // namespace
+
+void join_resonances(const std::vector<FreeDecay>& decays, std::vector<RepeatedMode>& modes) {
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    for (std::size_t k = i + 1; k < modes.size(); ++k) {
+      RepeatedMode& a = modes[i];
+      RepeatedMode& b = modes[k];
+      const bool is_question = may_be_part(a) && may_be_part(b) && overlap(a, b) &&
+                               is_series_or_weak(a, b) &&
+                               (a.standing == Standing::agreed || b.standing == Standing::agreed);
+      if (!is_question) {
+        continue;
+      }
+      const PairAmplitudes pair = amplitudes(a, b, decays, modes);
+      if (assurance(pair) < one_shape) {
+        continue;
+      }
+      const bool is_first_stronger = energy_of(pair.one, a) >= energy_of(pair.other, b);
+      join(is_first_stronger ? a : b, is_first_stronger ? b : a);
+    }
+  }
+}
+}  // namespace tapstudy::analysis

@@ -1,0 +1,21 @@
+#pragma once
+#include <vector>
+
+#include "analysis/modal/modes/repeated_modes.hpp"
+namespace tapstudy::analysis {
+// What a joint, a contact or large motion adds to one mode's decay is a series of exponentials at
+// nearly its frequency that die away sooner (Poincaré's normal form, resting_pole_fit.hpp). Their
+// amplitudes follow the mode's in every tap and at every sensor, because one shape moves; those of
+// another mode do not, where places or sensors differ.
+//
+// Two components are one resonance if they overlap (half of both half-power bandwidths together
+// exceeds the distance; all of them, where one dies away within blow_s), one dies away series_ratio
+// times as fast as the other or is as weak as what is not sought, and the modal assurance of their
+// amplitudes over all decays is at least one_shape. The one with more energy remains, agreed if
+// either was and as many taps show it; the other becomes doubtful, with the reason. Of one tap and
+// one sensor nothing tells them apart. Lines and background stay.
+inline constexpr double series_ratio = 1.6;
+// Of amplitudes a and a^3 over strengths from 0.4 to 1, which are one mode's, it is 0.88.
+inline constexpr double one_shape = 0.8;
+void join_resonances(const std::vector<FreeDecay>& decays, std::vector<RepeatedMode>& modes);
+}  // namespace tapstudy::analysis

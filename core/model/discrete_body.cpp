@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/model/element_order.hpp"
@@ -39,6 +40,7 @@ ModelReport report_on(const std::vector<DiscreteBody>& bodies, const Modes& mode
     report.nodes += static_cast<int>(body.mesh.nodes_m.rows());
     report.tets += static_cast<int>(body.mesh.tets.rows());
     report.dofs += body.dofs.count;
+    report.radius_edge_ratio = std::max(report.radius_edge_ratio, body.mesh.radius_edge_ratio);
   }
   report.order = bodies.front().mesh.order();
   report.cost.factor_s = modes.factor_s;

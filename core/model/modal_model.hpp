@@ -50,6 +50,7 @@ struct ModelReport {
   int rigid_body_modes{};
   int counted_in_band{};
   double worst_residual{};
+  double radius_edge_ratio{};               // the largest that a mesh was given (TetMesh)
   ModelCost cost;                           // of all rounds
   std::vector<RefinementRound> refinement;  // empty unless an accuracy was asked for
 };

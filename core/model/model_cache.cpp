@@ -91,6 +91,7 @@ void each_number(Report& report, const Visit& visit) {
   visit(report.rigid_body_modes);
   visit(report.counted_in_band);
   visit(report.worst_residual);
+  visit(report.radius_edge_ratio);
   visit(report.cost.mesh_s);
   visit(report.cost.assemble_s);
   visit(report.cost.factor_s);

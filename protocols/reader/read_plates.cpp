@@ -12,6 +12,7 @@
 #include "protocols/axes/axis.hpp"
 #include "protocols/reader/read_sections.hpp"
 #include "protocols/surface/check_surface.hpp"
+#include "protocols/surface/repair_command.hpp"
 #include "protocols/surface/surface_file.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -168,10 +169,18 @@ Eigen::Isometry3d read_pose(MapReader& reader) {
   return pose;
 }
 
-// A command line that may cure a surface's fault.
-std::string repair_command(const std::string& file, double metres_per_unit) {
-  return fmt::format("tapstudy repair {} --metres-per-unit {} --out {}_repaired.ply", file,
-                     metres_per_unit, std::filesystem::path{file}.stem().string());
+// Of a surface that passes; else a fault with the command that should cure it.
+core::Solid solid_of(core::TriangleSurface surface, const std::string& file,
+                     double metres_per_unit) {
+  try {
+    check_count(surface);
+    check_surface(surface);
+  } catch (const SurfaceFault& fault) {
+    throw core::InvalidInput{fmt::format("{}; try: {}", fault.what(),
+                                         command_that_cures(surface, file, metres_per_unit))};
+  }
+  std::string command = command_that_simplifies(surface, file, metres_per_unit);
+  return core::Solid{std::move(surface), std::move(command)};
 }
 
 // Problems of the surface itself are reported at its key; reading then continues.
@@ -196,11 +205,7 @@ core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Prot
                 for (auto point : surface.points_m.rowwise()) {
                   point = (pose * point.transpose()).transpose().eval();
                 }
-                check_surface(surface);
-                shape = core::Solid{std::move(surface)};
-              } catch (const SurfaceFault& fault) {
-                reader.reject("file", fmt::format("{}; try: {}", fault.what(),
-                                                  repair_command(file, metres_per_unit)));
+                shape = solid_of(std::move(surface), file, metres_per_unit);
               } catch (const core::InvalidInput& error) {
                 reader.reject("file", error.what());
               }

@@ -153,6 +153,13 @@ void check_crossings(const TriangleSurface& surface, const Mesh& mesh) {
 }
 }  // namespace
 
+void check_count(const TriangleSurface& surface) {
+  if (surface.triangles.rows() > max_triangles) {
+    throw SurfaceFault{fmt::format("surface: it has {} triangles (at most {})",
+                                   surface.triangles.rows(), max_triangles)};
+  }
+}
+
 // First, with location, defects that preclude building a mesh; then those CGAL finds in the mesh.
 void check_surface(const TriangleSurface& surface) {
   check_size(surface);

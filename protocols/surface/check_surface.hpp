@@ -12,6 +12,11 @@ class SeveralPieces : public SurfaceFault {
   using SurfaceFault::SurfaceFault;
 };
 
+// As many as are modelled; repair_surface takes more, to make fewer of them.
+inline constexpr int max_triangles = 200'000;
+// Throws SurfaceFault beyond.
+void check_count(const core::TriangleSurface& surface);
+
 // Checks that a surface is a closed, consistently oriented, connected 2-manifold without
 // self-intersections: finite points, non-degenerate triangles, every edge shared by two triangles
 // in opposite directions, normals outward, one shell, no intersecting or overlapping triangles,

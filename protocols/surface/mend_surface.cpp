@@ -16,11 +16,14 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 #include <vector>
 
+#include "core/geometry/triangle_tree.hpp"
 #include "core/model/shape/shape.hpp"
 #include "protocols/surface/flat_triangle.hpp"
 #include "protocols/surface/surface_job.hpp"
+#include "protocols/surface/surface_points.hpp"
 namespace tapstudy::protocols {
 namespace {
 namespace pmp = CGAL::Polygon_mesh_processing;
@@ -131,25 +134,83 @@ double area_m2(const Mesh& mesh, Face face) {
                    .norm();
 }
 
-// Returns how many pieces were dropped.
-int keep_largest_piece(Mesh& mesh) {
-  auto [piece_of, is_new] = mesh.add_property_map<Face, std::size_t>("f:piece", 0);
-  const std::size_t count = pmp::connected_components(mesh, piece_of);
-  if (count < 2) {
-    return 0;
+TriangleSurface surface_of_faces(const Mesh& mesh, const std::vector<Face>& faces) {
+  TriangleSurface surface;
+  surface.points_m.resize(3 * static_cast<Eigen::Index>(faces.size()), 3);
+  surface.triangles.resize(static_cast<Eigen::Index>(faces.size()), 3);
+  Eigen::Index row = 0;
+  for (const Face face : faces) {
+    for (const Vertex vertex : mesh.vertices_around_face(mesh.halfedge(face))) {
+      surface.points_m.row(row) = corner_m(mesh, vertex).transpose();
+      surface.triangles(row / 3, row % 3) = static_cast<int>(row);
+      ++row;
+    }
   }
-  std::vector<double> areas(count, 0.0);
+  return surface;
+}
+
+// The faces of each piece, the piece of the largest area first.
+std::vector<std::vector<Face>> pieces_of(Mesh& mesh) {
+  auto [piece_of, is_new] = mesh.add_property_map<Face, std::size_t>("f:piece", 0);
+  std::vector<std::vector<Face>> pieces(pmp::connected_components(mesh, piece_of));
+  std::vector<double> areas(pieces.size(), 0.0);
   for (const Face face : mesh.faces()) {
+    pieces[piece_of[face]].push_back(face);
     areas[piece_of[face]] += area_m2(mesh, face);
   }
-  const auto largest = static_cast<std::size_t>(std::ranges::max_element(areas) - areas.begin());
-  const std::vector<Face> faces{mesh.faces_begin(), mesh.faces_end()};
-  for (const Face face : faces) {
-    if (piece_of[face] != largest) {
+  const auto largest = std::ranges::max_element(areas) - areas.begin();
+  std::swap(pieces.front(), pieces[static_cast<std::size_t>(largest)]);
+  return pieces;
+}
+
+bool is_near(const TriangleSurface& piece, const core::TriangleTree& other, double near_m) {
+  bool is_found = false;
+  visit_points(piece, near_m, [&](const Vec3& at_m) {
+    is_found = other.is_near(at_m, near_m);
+    return !is_found;
+  });
+  return is_found;
+}
+
+// Which pieces are near the first, or near another one that is.
+std::vector<char> near_first(const std::vector<TriangleSurface>& pieces, double near_m) {
+  std::vector<char> is_kept(pieces.size(), 0);
+  std::vector<std::size_t> waiting{0};
+  is_kept[0] = 1;
+  while (near_m > 0.0 && !waiting.empty()) {
+    const TriangleSurface from = parted(pieces[waiting.back()]);
+    waiting.pop_back();
+    if (from.triangles.rows() == 0) {
+      continue;
+    }
+    const core::TriangleTree tree{from};
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (is_kept[i] == 0 && is_near(pieces[i], tree, near_m)) {
+        is_kept[i] = 1;
+        waiting.push_back(i);
+      }
+    }
+  }
+  return is_kept;
+}
+
+// Returns how many pieces were dropped.
+int keep_largest_piece(Mesh& mesh, double near_m) {
+  const auto pieces = pieces_of(mesh);
+  if (pieces.size() < 2) {
+    return 0;
+  }
+  std::vector<TriangleSurface> surfaces;
+  for (const auto& piece : pieces) {
+    surfaces.push_back(surface_of_faces(mesh, piece));
+  }
+  const std::vector<char> is_kept = near_first(surfaces, near_m);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (const Face face : is_kept[i] != 0 ? std::vector<Face>{} : pieces[i]) {
       CGAL::Euler::remove_face(mesh.halfedge(face), mesh);
     }
   }
-  return static_cast<int>(count) - 1;
+  return static_cast<int>(std::ranges::count(is_kept, 0));
 }
 
 struct Corners {
@@ -209,7 +270,7 @@ MendedSurface mend(const TriangleSurface& surface, const MendRequest& request) {
   Mesh mesh = oriented_mesh(surface);
   replace_flat_triangles(mesh);
   if (request.is_largest_piece_only) {
-    result.pieces_dropped = keep_largest_piece(mesh);
+    result.pieces_dropped = keep_largest_piece(mesh, request.near_m);
   }
   pmp::stitch_borders(mesh);
   result.holes = fill_holes(mesh, request.longest_hole_m);

@@ -15,9 +15,9 @@
 #include "core/geometry/triangle_tree.hpp"
 #include "core/model/shape/shape.hpp"
 #include "protocols/surface/check_surface.hpp"
-#include "protocols/surface/flat_triangle.hpp"
 #include "protocols/surface/join_points.hpp"
 #include "protocols/surface/surface_file.hpp"
+#include "protocols/surface/surface_points.hpp"
 #include "protocols/surface/wrap_surface.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -108,28 +108,6 @@ void count_changes(const TriangleSurface& before, SurfaceRepair& repair) {
   repair.dropped = static_cast<int>(old.size());
 }
 
-// Each with corners of its own, so that the tree needs no neighbours; those with an area.
-TriangleSurface parted(const TriangleSurface& surface) {
-  TriangleSurface apart;
-  apart.points_m.resize(3 * surface.triangles.rows(), 3);
-  Eigen::Index points = 0;
-  for (Eigen::Index i = 0; i < surface.triangles.rows(); ++i) {
-    const std::array<Vec3, 3> corners{corner_m(surface, i, 0), corner_m(surface, i, 1),
-                                      corner_m(surface, i, 2)};
-    if (!has_no_area(corners[0], corners[1], corners[2])) {
-      for (const Vec3& corner : corners) {
-        apart.points_m.row(points++) = corner.transpose();
-      }
-    }
-  }
-  apart.points_m.conservativeResize(points, 3);
-  apart.triangles.resize(points / 3, 3);
-  for (Eigen::Index i = 0; i < points; ++i) {
-    apart.triangles(i / 3, i % 3) = static_cast<int>(i);
-  }
-  return apart;
-}
-
 double distance_m(const core::TriangleTree& tree, const Vec3& point, double at_least_m,
                   double at_most_m) {
   constexpr int halvings = 40;
@@ -142,30 +120,19 @@ double distance_m(const core::TriangleTree& tree, const Vec3& point, double at_l
 
 // Of points no further apart than a fiftieth of the size, corners and centres among them.
 double farthest_m(const TriangleSurface& from, const TriangleSurface& to) {
-  constexpr int most_parts = 50;
+  constexpr double points_along = 50.0;
   const core::TriangleTree tree{parted(to)};
   const double whole_m = size_m(from) + size_m(to);
-  const double apart_m = size_m(from) / most_parts;
+  const double apart_m = size_m(from) / points_along;
   const double rounding_m = 1e-12 * whole_m;
   double farthest = 0.0;
   const auto visit = [&](const Vec3& point) {
     if (!tree.is_near(point, farthest + rounding_m)) {
       farthest = distance_m(tree, point, farthest, 2.0 * whole_m);
     }
+    return true;
   };
-  for (Eigen::Index i = 0; i < from.triangles.rows(); ++i) {
-    const Vec3 a = corner_m(from, i, 0);
-    const Vec3 ab = corner_m(from, i, 1) - a;
-    const Vec3 ac = corner_m(from, i, 2) - a;
-    const double longest_m = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-    const int parts = std::clamp(static_cast<int>(std::ceil(longest_m / apart_m)), 1, most_parts);
-    for (int u = 0; u <= parts; ++u) {
-      for (int v = 0; u + v <= parts; ++v) {
-        visit(a + ab * u / parts + ac * v / parts);
-      }
-    }
-    visit(a + (ab + ac) / 3.0);
-  }
+  visit_points(from, apart_m, visit);
   return farthest;
 }
 
@@ -197,10 +164,34 @@ bool is_closed(const TriangleSurface& surface) {
                   refusal.why, advice, at_m)};
 }
 
+// Whether a wrap is mostly its own offset, as around a sheet: about twice that thick.
+bool is_skin(const TriangleSurface& wrap, double offset_m) {
+  return core::volume_m3(wrap) < 2.0 * offset_m * area_m2(wrap);
+}
+
+// In place of what does not pass; in one piece, if that is asked for.
+void wrap(const TriangleSurface& surface, const RepairRequest& request, SurfaceRepair& repair) {
+  const double wrap_m = request.wrap_m.value();
+  repair.holes = {};
+  repair.wrap_offset_m = wrap_offset_share * wrap_m;
+  repair.surface = wrapped(surface, wrap_m, *repair.wrap_offset_m);
+  if (is_skin(repair.surface, *repair.wrap_offset_m)) {
+    repair.wrap_offset_m = skin_offset_share * wrap_m;
+    repair.surface = wrapped(surface, wrap_m, *repair.wrap_offset_m);
+  }
+  const auto refusal = refusal_of(repair.surface);
+  if (request.is_largest_piece_only && refusal && refusal->is_of_pieces) {
+    const MendedSurface one = mended(repair.surface, {0.0, true, 0.0});
+    repair.surface = one.surface;
+    repair.pieces_dropped += one.pieces_dropped;
+  }
+}
+
 // Reaches what passes check_surface, or refuses.
 void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceRepair& repair) {
   const double hole_m = request.longest_hole_m.value_or(size_m(joined));
-  MendedSurface mended_surface = mended(joined, {hole_m, request.is_largest_piece_only});
+  MendedSurface mended_surface =
+      mended(joined, {hole_m, request.is_largest_piece_only, request.wrap_m.value_or(0.0)});
   repair.holes = mended_surface.holes;
   repair.pieces_dropped = mended_surface.pieces_dropped;
   std::optional<Refusal> refusal;
@@ -214,18 +205,35 @@ void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceR
     return;
   }
   if (!request.wrap_m) {
-    refuse(*refusal, repair, hole_m, size_m(joined) / 50.0);
+    refuse(*refusal, repair, hole_m, advised_wrap_m(joined));
   }
-  repair.is_wrapped = true;
-  repair.holes = {};
-  const bool has_dropped =
-      request.is_largest_piece_only && mended_surface.surface.triangles.rows() > 0;
-  repair.surface = wrapped(has_dropped ? mended_surface.surface : joined, *request.wrap_m);
+  wrap(mended_surface.pieces_dropped > 0 ? mended_surface.surface : joined, request, repair);
+}
+
+// The first of these numbers of triangles whose surface passes check_surface; else that of the
+// first number. Fewer triangles run through each other at other places.
+TriangleSurface simplified_to(const TriangleSurface& surface, int max_triangles) {
+  constexpr std::array shares{1.0, 0.85, 0.7};
+  TriangleSurface first;
+  for (const double share : shares) {
+    TriangleSurface fewer =
+        reread(simplified(surface, static_cast<int>(share * static_cast<double>(max_triangles))));
+    if (!refusal_of(fewer)) {
+      return fewer;
+    }
+    first = first.triangles.rows() == 0 ? std::move(fewer) : std::move(first);
+  }
+  return first;
 }
 
 void simplify(const RepairRequest& request, SurfaceRepair& repair) {
-  if (request.max_triangles && repair.surface.triangles.rows() > *request.max_triangles) {
-    repair.surface = simplified(repair.surface, *request.max_triangles);
+  if (!request.max_triangles || repair.surface.triangles.rows() <= *request.max_triangles) {
+    return;
+  }
+  repair.surface = simplified_to(repair.surface, *request.max_triangles);
+  if (request.wrap_m && !repair.wrap_offset_m && refusal_of(repair.surface)) {
+    wrap(repair.surface, request, repair);
+    simplify(request, repair);
   }
 }
 }  // namespace
@@ -241,6 +249,7 @@ SurfaceRepair repair_surface(const TriangleSurface& surface, const RepairRequest
   }
   simplify(request, repair);
   repair.surface = reread(repair.surface);
+  check_count(repair.surface);
   if (const auto refusal = refusal_of(repair.surface)) {
     throw SurfaceFault{fmt::format(
         "{}, once it is {}; nothing is written (try {})", refusal->why,
@@ -255,6 +264,10 @@ SurfaceRepair repair_surface(const TriangleSurface& surface, const RepairRequest
   repair.farthest_from_old_m = farthest_m(repair.surface, surface);
   repair.farthest_from_new_m = farthest_m(surface, repair.surface);
   return repair;
+}
+
+double advised_wrap_m(const TriangleSurface& surface) {
+  return size_m(surface) / 50.0;
 }
 
 double area_m2(const TriangleSurface& surface) {

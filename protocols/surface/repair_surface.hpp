@@ -8,6 +8,8 @@ namespace tapstudy::protocols {
 struct RepairRequest {
   double join_share{1e-5};                 // of the size: corners no further apart are one
   std::optional<double> longest_hole_m{};  // round its border; unset: as long as the surface's size
+  // The rest is dropped. Where wrap_m is set, pieces no further than that from one that is kept are
+  // kept and wrapped with it.
   bool is_largest_piece_only{false};
   std::optional<double> wrap_m{};      // unset: what cannot be mended is refused
   std::optional<int> max_triangles{};  // unset: as many as it has
@@ -18,7 +20,7 @@ struct SurfaceRepair {
   int corners_joined{};
   Holes holes{};
   int pieces_dropped{};
-  bool is_wrapped{false};
+  std::optional<double> wrap_offset_m{};  // by which a wrap lies outside; unset: not wrapped
   // By comparison of the triangles before, once their corners were joined, with those now.
   int kept{};
   int turned{};
@@ -32,10 +34,14 @@ struct SurfaceRepair {
 };
 
 // What passes check_surface is returned as it is, if it has few enough triangles. All else is
-// joined and mended, wrapped where that was asked for and mending did not do, then simplified.
+// joined and mended, wrapped where that was asked for and mending did not do, then simplified; and
+// wrapped, where that was asked for, if once simplified it runs through itself.
 // Throws SurfaceFault, with what to try, where the result would still be refused, and ModelError
 // where CGAL cannot do it.
 SurfaceRepair repair_surface(const core::TriangleSurface& surface, const RepairRequest& request);
+
+// The gaps that a wrap of it bridges, if nothing else is known: a fiftieth of its size.
+double advised_wrap_m(const core::TriangleSurface& surface);
 
 double area_m2(const core::TriangleSurface& surface);
 

@@ -28,7 +28,7 @@ namespace tapstudy::protocols {
 namespace {
 using core::Vec3;
 constexpr double max_coordinate_m = 1e6;
-constexpr std::size_t max_triangles = 200'000;
+constexpr std::size_t most_read = 2'000'000;  // triangles
 
 std::string ending_of(const std::string& file) {
   std::string ending = std::filesystem::path{file}.extension().string();
@@ -345,9 +345,9 @@ ReadSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
     const auto cut = triangles_of(from_first_corner(polygon, soup), soup, source.file);
     triangles.insert(triangles.end(), cut.begin(), cut.end());
   }
-  if (triangles.size() > max_triangles) {
+  if (triangles.size() > most_read) {
     throw core::InvalidInput{
-        fmt::format("{}: {} triangles (at most {})", source.file, triangles.size(), max_triangles)};
+        fmt::format("{}: {} triangles (at most {})", source.file, triangles.size(), most_read)};
   }
   ReadSurface read = in_canonical_order(triangles, soup);
   if (read.surface.triangles.rows() == 0) {

@@ -3,6 +3,7 @@
 #include "protocols/surface/cgal_triangulation.hpp"
 // CGAL's other headers follow, which include what that one changes.
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Bounded_normal_change_filter.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 #include <CGAL/alpha_wrap_3.h>
 
@@ -36,15 +37,14 @@ const core::ChildJob wrapping{
     "wrap a surface", [](const std::string& input) {
       core::UnpackedBytes bytes{input};
       const TriangleSurface surface = surface_in(bytes);
-      const double distance_m = bytes.get<std::vector<double>>().at(0);
+      const auto lengths_m = bytes.get<std::vector<double>>();
       std::vector<std::array<std::size_t, 3>> triangles;
       for (const auto& t : surface.triangles.rowwise()) {
         triangles.push_back({static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
                              static_cast<std::size_t>(t[2])});
       }
       Mesh wrap;
-      CGAL::alpha_wrap_3(points_in(surface), triangles, distance_m, wrap_offset_share * distance_m,
-                         wrap);
+      CGAL::alpha_wrap_3(points_in(surface), triangles, lengths_m.at(0), lengths_m.at(1), wrap);
       wrap.collect_garbage();
       return packed(surface_of(wrap));
     }};
@@ -75,29 +75,33 @@ const core::ChildJob simplifying{
         }
       }
       // a closed surface of triangles has three edges to two of them
-      CGAL::Surface_mesh_simplification::edge_collapse(mesh, FewEdges{3 * triangles / 2});
+      namespace simplification = CGAL::Surface_mesh_simplification;
+      simplification::edge_collapse(
+          mesh, FewEdges{3 * triangles / 2},
+          CGAL::parameters::filter(simplification::Bounded_normal_change_filter<>{}));
       mesh.collect_garbage();
       return packed(surface_of(mesh));
     }};
 
 template <class Value>
-TriangleSurface result_of(const core::ChildJob& job, const TriangleSurface& surface, Value value,
-                          const std::string& what) {
+TriangleSurface result_of(const core::ChildJob& job, const TriangleSurface& surface,
+                          const std::vector<Value>& values, const std::string& what) {
   core::PackedBytes input;
   put(input, surface);
-  input.put(std::vector<Value>{value});
+  input.put(values);
   const std::string output = core::in_bounded_child(job, input.take(), what, surface_job_limits);
   core::UnpackedBytes bytes{output};
   return surface_in(bytes);
 }
 }  // namespace
 
-TriangleSurface wrapped(const TriangleSurface& surface, double distance_m) {
-  return result_of(wrapping, surface, distance_m,
+TriangleSurface wrapped(const TriangleSurface& surface, double distance_m, double offset_m) {
+  return result_of(wrapping, surface, std::vector{distance_m, offset_m},
                    "surface: it could not be wrapped at that distance (try a larger one)");
 }
 
 TriangleSurface simplified(const TriangleSurface& surface, int max_triangles) {
-  return result_of(simplifying, surface, max_triangles, "surface: it could not be simplified");
+  return result_of(simplifying, surface, std::vector{max_triangles},
+                   "surface: it could not be simplified");
 }
 }  // namespace tapstudy::protocols

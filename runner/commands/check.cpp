@@ -104,7 +104,8 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
             "    modes that move less than 1 % of the strongest at every tapping point: {}\n",
             unfelt);
       }
-      warnings += warning_of_order(own, report) + warning_of_errors(stimulus.name, errors);
+      warnings += note_of_relaxation(own, report) + warning_of_order(own, report) +
+                  warning_of_errors(stimulus.name, errors);
     }
   }
   fmt::print("{}", warnings);

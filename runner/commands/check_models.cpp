@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/model/element_order.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/progress.hpp"
 #include "core/techniques/compensated.hpp"
 #include "core/techniques/technique.hpp"
@@ -257,6 +258,18 @@ std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
       "radius_edge_ratio: 2 or a larger max_tet_volume_m3; or order: 2, if time and memory "
       "allow)\n",
       stimulus.name, core::max_chosen_dofs);
+}
+
+std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
+                               const core::ModelReport& report) {
+  const double asked = stimulus.plate->mesh.size.radius_edge_ratio;
+  if (report.radius_edge_ratio <= asked) {
+    return {};
+  }
+  return fmt::format(
+      "  note: {} is meshed with radius_edge_ratio: {}, as {} would take more than {:.0g} "
+      "tetrahedra\n",
+      stimulus.name, report.radius_edge_ratio, asked, core::max_tets);
 }
 
 std::string describe_errors(const core::FrequencyErrors& errors) {

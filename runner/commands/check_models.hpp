@@ -32,6 +32,10 @@ std::string describe_noise(const protocols::Protocol& protocol);
 // empty.
 std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
                              const core::ModelReport& report);
+// Where the mesher was given a larger radius-edge ratio than the protocol's: what and why; else
+// empty.
+std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
+                               const core::ModelReport& report);
 // One line about the discretisation error of a model's frequencies.
 std::string describe_errors(const core::FrequencyErrors& errors);
 // Beyond 5 %, or where modes are missing, or nothing is known: a warning with its cure; else empty.

@@ -88,6 +88,7 @@ void print_json(const protocols::Protocol& protocol, const protocols::PresentedS
   json["nodes"] = report.nodes;
   json["elements"] = report.tets;
   json["dof"] = report.dofs;
+  json["radius_edge_ratio"] = report.radius_edge_ratio;
   json["rigid_body_modes"] = report.rigid_body_modes;
   json["modes_in_band_by_inertia"] = report.counted_in_band;
   json["worst_residual"] = report.worst_residual;
@@ -173,7 +174,7 @@ void print_table(const protocols::PresentedStimulus& stimulus, const core::Plate
   if (!is_beam) {
     print_completeness(report, spec.band_limit_hz);
     fmt::print("  {}\n", describe_errors(errors));
-    fmt::print("{}{}", warning_of_order(stimulus, report),
+    fmt::print("{}{}{}", note_of_relaxation(stimulus, report), warning_of_order(stimulus, report),
                warning_of_errors(stimulus.name, errors));
   }
 }

@@ -8,7 +8,6 @@
 #include "core/model/shape/shape.hpp"
 #include "protocols/surface/repair_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
-#include "protocols/surface/wrap_surface.hpp"
 #include "protocols/yaml/text_file.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/terminal/logging.hpp"
@@ -62,12 +61,11 @@ void print_repair(const RepairOptions& options, const protocols::SurfaceRepair& 
     fmt::print("pieces dropped: {}\n", repair.pieces_dropped);
   }
   if (options.wrap_m > 0.0) {
-    fmt::print("{}\n",
-               repair.is_wrapped
-                   ? fmt::format("wrapped: gaps up to {:.3g} m are bridged, the surface "
-                                 "lies {:.3g} m outside",
-                                 options.wrap_m, protocols::wrap_offset_share * options.wrap_m)
-                   : std::string{"not wrapped: that was not needed"});
+    fmt::print("{}\n", repair.wrap_offset_m
+                           ? fmt::format("wrapped: gaps up to {:.3g} m are bridged, the surface "
+                                         "lies {:.3g} m outside",
+                                         options.wrap_m, *repair.wrap_offset_m)
+                           : std::string{"not wrapped: that was not needed"});
   }
   fmt::print("triangles: {} kept, {} turned, {} dropped, {} added\n", repair.kept, repair.turned,
              repair.dropped, repair.added);
@@ -120,11 +118,12 @@ void add_repair(CommandParser& line) {
                         "Corners no further apart than this share of the size are one");
   command.number_within("--largest-hole", options->largest_hole_m, 0.0, longest_m,
                         "Fill holes up to this many metres round; 0: as the surface's size");
-  command.flag("--largest-piece", options->is_largest_piece_only,
-               "Drop all pieces but the one of the largest area");
+  command.flag(
+      "--largest-piece", options->is_largest_piece_only,
+      "Drop all pieces but the one of the largest area, and those that --wrap bridges to it");
   command.number_within("--wrap", options->wrap_m, 0.0, longest_m,
-                        "Where mending does not do: a new surface around all, which bridges this "
-                        "many metres; 0: none");
+                        "Where mending or simplifying does not do: a new surface around all, which "
+                        "bridges this many metres; 0: none");
   command.option_with_default("--max-triangles", options->max_triangles,
                               "Simplify to this many triangles at most; 0: as many as it has");
   command.on_run([options] { repair(*options); });

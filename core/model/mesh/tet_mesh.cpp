@@ -164,6 +164,7 @@ TetMesh to_quadratic(const TetMesh& mesh) {
   const std::vector<Edge> edges = edges_of(mesh);
   const Eigen::Index corners = mesh.nodes_m.rows();
   TetMesh result;
+  result.radius_edge_ratio = mesh.radius_edge_ratio;
   result.nodes_m.resize(corners + static_cast<Eigen::Index>(edges.size()), 3);
   result.nodes_m.topRows(corners) = mesh.nodes_m;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -178,7 +179,7 @@ TetMesh to_quadratic(const TetMesh& mesh) {
 TetMesh to_hierarchic_cubic(const TetMesh& mesh) {
   const std::vector<Edge> edges = edges_of(mesh);
   const std::vector<Face> faces = faces_of(mesh);
-  TetMesh result{mesh.nodes_m, {}, {}};
+  TetMesh result{mesh.nodes_m, {}, {}, mesh.radius_edge_ratio};
   append_middles(edges, result);
   append_middles(faces, result);
   const Eigen::Index first_edge = mesh.nodes_m.rows();

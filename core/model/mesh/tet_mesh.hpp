@@ -24,6 +24,8 @@ struct TetMesh {
   Indices
       surface;  // 3 or 6 nodes per row: corners, outward counter-clockwise, then mid-side nodes
                 // of the edges 01 12 20 (order 3: 10; then these edges' and the face's unknowns)
+  // The bound on circumradius over shortest edge that the mesher was given; 0: no mesher's.
+  double radius_edge_ratio{0.0};
   // Whether each node of the mesh is one of these.
   std::vector<bool> marked(const std::vector<Eigen::Index>& nodes) const;
   int order() const { return tets.cols() == 20 ? 3 : tets.cols() == 10 ? 2 : 1; }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -226,9 +227,10 @@ void find_surface(TetMesh& mesh) {
   }
 }
 
-TetMesh mesh_from(const TetgenOutput& output, const Thickening& thickening) {
+TetMesh mesh_from(const TetgenOutput& output, const Thickening& thickening, double ratio) {
   using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
   TetMesh mesh;
+  mesh.radius_edge_ratio = ratio;
   mesh.nodes_m = Eigen::Map<const Points>{
       output.coordinates.data(), static_cast<Eigen::Index>(output.coordinates.size() / 3), 3};
   mesh.nodes_m.col(2) /= thickening.flattening;
@@ -248,23 +250,67 @@ std::string tetgen_switches(const MeshSize& size) {
   return switches;
 }
 
-void check_end(const TetgenInput& input, const TetgenOutput& output, const MeshSize& size) {
-  constexpr double relaxed = 2.0;  // of elements that are still of use
+bool has_too_many(const TetgenInput& input, const TetgenOutput& output) {
   const std::size_t added = (output.coordinates.size() - input.coordinates.size()) / 3;
-  if (added < max_added_points && static_cast<double>(output.corners.size()) <= 4.0 * max_tets) {
-    return;
+  return added >= max_added_points || static_cast<double>(output.corners.size()) > 4.0 * max_tets;
+}
+
+// The bounds of the radius-edge ratio to try in turn: those beyond the first ask for fewer elements
+// round small triangles. A box has none, nor do they help where the triangles alone are too many.
+std::vector<double> ratios_to_try(const Shape& shape, const MeshSize& size) {
+  constexpr std::array relaxed{2.0, 4.0};
+  constexpr double tets_per_triangle = 4.0;  // of surfaces whose nodes all lie on them, and more
+  std::vector<double> ratios{size.radius_edge_ratio};
+  const auto* const solid = std::get_if<Solid>(&shape);
+  if (solid != nullptr &&
+      tets_per_triangle * static_cast<double>(solid->surface().triangles.rows()) < max_tets) {
+    std::ranges::copy_if(relaxed, std::back_inserter(ratios),
+                         [&](double ratio) { return ratio > size.radius_edge_ratio; });
   }
-  std::string advice = "a surface without tiny triangles";
-  if (size.radius_edge_ratio < relaxed) {
-    advice += fmt::format(", or mesh.radius_edge_ratio: {} in place of {}, which asks for less",
-                          relaxed, size.radius_edge_ratio);
+  return ratios;
+}
+
+std::string command_for(const Shape& shape) {
+  const auto* const solid = std::get_if<Solid>(&shape);
+  return solid == nullptr || solid->simplified_by().empty() ? std::string{}
+                                                            : "; try: " + solid->simplified_by();
+}
+
+std::string advice_for(const Shape& shape, const MeshSize& size) {
+  constexpr Eigen::Index many = 2000;  // fewer are not what takes the elements
+  const auto* const solid = std::get_if<Solid>(&shape);
+  if (solid != nullptr && solid->surface().triangles.rows() >= many) {
+    return command_for(shape);
   }
   if (size.max_tet_volume_m3) {
-    advice += fmt::format(", or tetrahedra larger than {:.3g} m³", *size.max_tet_volume_m3);
+    return fmt::format("; try tetrahedra larger than {:.3g} m³", *size.max_tet_volume_m3);
   }
+  return size.flattening < max_flattening
+             ? fmt::format(
+                   "; if it is thin along z, try mesh.flattening: {:.0f}, which flattens "
+                   "its elements",
+                   std::min(max_flattening, 4.0 * size.flattening))
+             : std::string{};
+}
+
+[[noreturn]] void refuse_count(const Shape& shape, const MeshSize& size, double last_ratio) {
   throw ModelError{
-      fmt::format("mesh: it needs more than {:.0g} tetrahedra or {} added points (try {})",
-                  max_tets, max_added_points, advice)};
+      fmt::format("mesh: it needs more than {:.0g} tetrahedra or {} added points{}{}", max_tets,
+                  max_added_points,
+                  last_ratio > size.radius_edge_ratio
+                      ? fmt::format(", also with mesh.radius_edge_ratio: {} in place of {}",
+                                    last_ratio, size.radius_edge_ratio)
+                      : std::string{},
+                  advice_for(shape, size))};
+}
+
+// TetGen's message, with the command that simplifies the surface.
+TetgenOutput tetrahedra_of(const TetgenInput& input, const Shape& shape) {
+  try {
+    return run_tetgen(input);
+  } catch (const ModelError& error) {
+    throw ModelError{error.what() + command_for(shape)};
+  }
 }
 }  // namespace
 
@@ -275,9 +321,16 @@ TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<V
   TetgenInput input = box != nullptr
                           ? input_for(outline(*box, points_m, bounds(shape).snap_m()), thickening)
                           : input_for(std::get<Solid>(shape).surface(), thickening);
-  input.switches = tetgen_switches(size);
-  const TetgenOutput output = run_tetgen(input);
-  check_end(input, output, size);
-  return mesh_from(output, thickening);
+  const std::vector<double> ratios = ratios_to_try(shape, size);
+  for (const double ratio : ratios) {
+    MeshSize tried = size;
+    tried.radius_edge_ratio = ratio;
+    input.switches = tetgen_switches(tried);
+    const TetgenOutput output = tetrahedra_of(input, shape);
+    if (!has_too_many(input, output)) {
+      return mesh_from(output, thickening, ratio);
+    }
+  }
+  refuse_count(shape, size, ratios.back());
 }
 }  // namespace tapstudy::core

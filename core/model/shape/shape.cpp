@@ -19,7 +19,8 @@ std::string_view bytes_of(const Matrix& matrix) {
 }
 }  // namespace
 
-Solid::Solid(TriangleSurface surface) {
+Solid::Solid(TriangleSurface surface, std::string simplified_by)
+    : simplified_by_{std::move(simplified_by)} {
   std::string bytes{bytes_of(surface.points_m)};
   bytes += bytes_of(surface.triangles);
   sha256_ = core::sha256(bytes);

@@ -19,7 +19,10 @@ struct Box {
 // the data.
 class Solid {
  public:
-  explicit Solid(TriangleSurface surface);
+  // simplified_by: the command that makes a surface of fewer triangles of this one's file, for
+  // errors; empty: none is known.
+  explicit Solid(TriangleSurface surface, std::string simplified_by = {});
+  const std::string& simplified_by() const { return simplified_by_; }
   const TriangleSurface& surface() const { return triangles_->surface(); }
   const std::shared_ptr<const TriangleTree>& triangles() const { return triangles_; }
   const std::string& sha256() const { return sha256_; }  // of its points and triangles
@@ -27,6 +30,7 @@ class Solid {
  private:
   std::shared_ptr<const TriangleTree> triangles_;
   std::string sha256_;
+  std::string simplified_by_;
 };
 
 // The geometry of a body: a box, tapped on its upper face, or any other solid, tapped anywhere,

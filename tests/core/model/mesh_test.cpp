@@ -8,6 +8,7 @@
 #include "core/model/modes/modal_solver.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
+#include "support/surfaces.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using core::Box;
@@ -172,4 +173,18 @@ TEST_CASE("slivers make a body stiffer or are refused, but never spoil its modes
       CHECK_THAT(refusal.what(), Contains("flat") || Contains("no volume"));
     }
   }
+}
+
+TEST_CASE(
+    "where the bound asked for takes too many elements, a surface is meshed with the next, and "
+    "told",
+    "[core][mesh][slow]") {
+  const core::Shape ball = core::Solid{testing::sphere_surface(0.05, 30)};
+  core::MeshSize size;
+  size.radius_edge_ratio = 1.1;  // with which TetGen does not end near the poles
+  const core::TetMesh mesh = core::mesh_shape(ball, size);
+  CHECK(mesh.radius_edge_ratio == 2.0);
+  CHECK(core::to_quadratic(mesh).radius_edge_ratio == 2.0);
+  CHECK(core::volume_m3(mesh) == Approx(core::volume_m3(ball)).epsilon(1e-9));
+  CHECK(core::mesh_shape(ball, {}).radius_edge_ratio == core::MeshSize{}.radius_edge_ratio);
 }

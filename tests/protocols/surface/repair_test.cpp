@@ -4,8 +4,10 @@
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/shape/shape.hpp"
 #include "protocols/surface/check_surface.hpp"
+#include "protocols/surface/repair_command.hpp"
 #include "protocols/surface/repair_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
 #include "support/catch.hpp"
@@ -35,6 +37,19 @@ core::TriangleSurface cube_at(double low_m, double side_m) {
   return testing::cells_surface(Eigen::Vector3d::Constant(low_m), Eigen::Vector3d::Constant(side_m),
                                 {1, 1, 1}, [](const Eigen::Vector3i&) { return true; });
 }
+// A ball's skin between two spheres, with a tube through it: a body of one piece and little
+// thickness.
+core::TriangleSurface thin_shell() {
+  constexpr double thick = 0.002;
+  return testing::wrapped_surface(24, 40, [](int i, int j) -> Eigen::RowVector3d {
+    const double along = j < 20 ? (j + 0.5) / 20.0 : (39.5 - j) / 20.0;
+    const double radius = j < 20 ? 0.05 : 0.05 * (1.0 - thick);
+    const double polar = 0.4 + 2.3 * along;
+    const double turn = -2.0 * M_PI * i / 24;
+    return {radius * std::sin(polar) * std::cos(turn), radius * std::sin(polar) * std::sin(turn),
+            radius * std::cos(polar)};
+  });
+}
 core::TriangleSurface without_triangles(const core::TriangleSurface& surface, int count) {
   core::TriangleSurface open = surface;
   open.triangles = surface.triangles.bottomRows(surface.triangles.rows() - count).eval();
@@ -54,7 +69,7 @@ TEST_CASE("a surface that encloses a body is not changed by repair, to the bit",
   CHECK(are_bitwise_equal(repair.surface, body));
   CHECK(repair.kept == body.triangles.rows());
   CHECK(repair.turned + repair.dropped + repair.added + repair.corners_joined == 0);
-  CHECK_FALSE(repair.is_wrapped);
+  CHECK_FALSE(repair.wrap_offset_m);
   CHECK(repair.farthest_from_old_m == Approx(0.0).margin(1e-12));
 }
 
@@ -149,7 +164,7 @@ TEST_CASE("two bodies that cross are refused until they are wrapped, in what con
   CHECK_THROWS_WITH(protocols::repair_surface(crossing, {}), Contains("--wrap"));
   constexpr double wrap_m = 0.002;
   const protocols::SurfaceRepair repair = protocols::repair_surface(crossing, {.wrap_m = wrap_m});
-  CHECK(repair.is_wrapped);
+  CHECK(repair.wrap_offset_m);
   CHECK_NOTHROW(protocols::check_surface(repair.surface));
   const core::Bounds around = core::bounds(repair.surface);
   CHECK((around.low_m.array() < 0.0).all());
@@ -183,6 +198,89 @@ TEST_CASE("of several pieces the largest is kept where that is asked for",
   check_restored(repair);
   CHECK(repair.pieces_dropped == 1);
   CHECK(repair.dropped == 12);
+}
+
+TEST_CASE("a sheet is wrapped into a skin a third as thick as what the wrap bridges",
+          "[protocols][surface][repair]") {
+  constexpr double side_m = 0.02;
+  const core::TriangleSurface sheet = testing::surface_of(
+      {{0.0, 0.0, 0.0}, {side_m, 0.0, 0.0}, {side_m, side_m, 0.0}, {0.0, side_m, 0.002}},
+      {{0, 1, 2}, {0, 2, 3}});
+  constexpr double wrap_m = 0.001;
+  const protocols::SurfaceRepair repair =
+      protocols::repair_surface(as_it_is_read(sheet), {.longest_hole_m = 0.01, .wrap_m = wrap_m});
+  CHECK_NOTHROW(protocols::check_surface(repair.surface));
+  const double thickness_m =
+      core::volume_m3(repair.surface) / (0.5 * protocols::area_m2(repair.surface));
+  CHECK(thickness_m == Approx(wrap_m / 3.0).epsilon(0.1));
+  CHECK(repair.wrap_offset_m.value() == Approx(wrap_m / 6.0));
+}
+
+TEST_CASE(
+    "pieces within what a wrap bridges are one body with the largest, those further away are "
+    "dropped",
+    "[protocols][surface][repair]") {
+  const core::TriangleSurface near = testing::joined_surfaces(
+      cube_at(0.0, 0.02), testing::cells_surface({0.0, 0.0, 0.021}, {0.02, 0.02, 0.01}, {1, 1, 1},
+                                                 [](const Eigen::Vector3i&) { return true; }));
+  const core::TriangleSurface pieces =
+      as_it_is_read(testing::joined_surfaces(near, cube_at(0.1, 0.005)));
+  const protocols::SurfaceRepair repair =
+      protocols::repair_surface(pieces, {.is_largest_piece_only = true, .wrap_m = 0.002});
+  CHECK_NOTHROW(protocols::check_surface(repair.surface));
+  CHECK(repair.wrap_offset_m);
+  CHECK(repair.pieces_dropped == 1);
+  const core::Bounds around = core::bounds(repair.surface);
+  CHECK((around.high_m - core::Vec3{0.02, 0.02, 0.031}).norm() < 0.001);
+  CHECK(core::volume_m3(repair.surface) > 8e-6 + 4e-6);
+}
+
+TEST_CASE("a piece further away than a wrap bridges is dropped without wrapping the rest",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface apart =
+      as_it_is_read(testing::joined_surfaces(frame(), cube_at(0.1, 0.002)));
+  const protocols::SurfaceRepair repair =
+      protocols::repair_surface(apart, {.is_largest_piece_only = true, .wrap_m = 0.002});
+  check_restored(repair);
+  CHECK_FALSE(repair.wrap_offset_m);
+  CHECK(repair.pieces_dropped == 1);
+}
+
+TEST_CASE("what runs through itself once it is simplified is wrapped where that is asked for",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface shell = as_it_is_read(thin_shell());
+  REQUIRE_NOTHROW(protocols::check_surface(shell));
+  CHECK_THROWS_WITH(protocols::repair_surface(shell, {.max_triangles = 700}),
+                    Contains("runs through itself") && Contains("simplified"));
+  const protocols::SurfaceRepair repair =
+      protocols::repair_surface(shell, {.wrap_m = 0.012, .max_triangles = 700});
+  CHECK_NOTHROW(protocols::check_surface(repair.surface));
+  CHECK(repair.wrap_offset_m);
+  CHECK(repair.surface.triangles.rows() <= 700);
+}
+
+TEST_CASE(
+    "the command for a refused surface is one shell word an argument, and simplifies what has too "
+    "many triangles",
+    "[protocols][surface][repair]") {
+  const core::TriangleSurface body = frame();
+  CHECK_THAT(protocols::command_that_cures(body, "my 'mug'.stl", 0.001),
+             Contains(R"(repair 'my '\''mug'\''.stl' --metres-per-unit 0.001 --wrap)") &&
+                 Contains("--max-triangles 20000"));
+  core::TriangleSurface large = body;
+  large.triangles = body.triangles.replicate(200'001 / body.triangles.rows() + 1, 1).eval();
+  CHECK_THROWS_AS(protocols::check_count(large), protocols::SurfaceFault);
+  CHECK_THAT(protocols::command_that_cures(large, "mug.stl", 1.0),
+             Contains("--max-triangles 10000"));
+}
+
+TEST_CASE("a surface that the mesher cannot fill is refused with the command that simplifies it",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface crossing = testing::joined_surfaces(
+      testing::icosphere_surface(0.02, 4),
+      testing::box_surface({0.03, 0.01, 0.03}));  // as only a fault of check_surface lets through
+  const core::Shape body = core::Solid{crossing, "tapstudy repair this"};
+  CHECK_THROWS_WITH(core::mesh_shape(body, {}), Contains("; try: tapstudy repair this"));
 }
 
 TEST_CASE("a flat-sided body keeps its volume when it is simplified",

@@ -662,8 +662,8 @@ TEST_CASE("a surface is turned about its vector, then moved; beside it is its ne
 
 TEST_CASE("a mesh that would be too large is refused with what would help, not with keys unset",
           "[protocols][surface][slow]") {
-  const core::Shape sheet = core::Solid{testing::box_surface({1.0, 1.0, 0.003})};
-  CHECK_THROWS_WITH(
-      core::mesh_shape(sheet, {}, {}),
-      Contains("mesh.radius_edge_ratio: 2 in place of 1.414") && !Contains("larger than"));
+  const core::Shape sheet = core::Solid{testing::box_surface({1.0, 1.0, 0.002})};
+  CHECK_THROWS_WITH(core::mesh_shape(sheet, {}, {}),
+                    Contains("also with mesh.radius_edge_ratio: 4 in place of 1.414") &&
+                        Contains("mesh.flattening") && !Contains("larger than"));
 }

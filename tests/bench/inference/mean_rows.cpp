@@ -156,7 +156,8 @@ std::optional<Outcome> exponent(const StudyDraw& draw) {
 }
 
 std::optional<Outcome> bootstrap_of(const std::vector<double>& values, double truth) {
-  return holds(analysis::bootstrap_interval(values, 999, 1).value(), truth);
+  const auto interval = analysis::bootstrap_interval(values, 999, 1);
+  return interval ? std::optional{holds(*interval, truth)} : std::nullopt;
 }
 
 // Of each the mean d' = 1.5, by 15 signals and 15 others, with criteria of their own.

@@ -22,10 +22,7 @@ Values values_of_person(core::Rng& rng) {
   return own;
 }
 
-struct Judges {
-  std::vector<analysis::PairedCounts> people;
-  analysis::PairedCounts all{Eigen::MatrixXi::Zero(items, items), {}};
-};
+using Judges = std::vector<analysis::PairedCounts>;
 
 // Every pair three times, by people who differ; some stop after the first.
 Judges judges_of(const StudyDraw& draw) {
@@ -42,8 +39,7 @@ Judges judges_of(const StudyDraw& draw) {
         counts.wins(j, i) = repetitions - wins;
       }
     }
-    judges.all.wins += counts.wins;
-    judges.people.push_back(counts);
+    judges.push_back(counts);
   }
   return judges;
 }
@@ -53,25 +49,25 @@ constexpr int many = 20000;  // people, of whom the truth is taken
 std::optional<Outcome> bradley_terry_value(const StudyDraw& draw) {
   static const double truth = [] {
     core::Rng rng{3};
-    return analysis::bradley_terry(judges_of({many, rng}).all).scale.values[0];
+    return analysis::bradley_terry({sum(judges_of({many, rng}))}).scale.values[0];
   }();
-  return holds(analysis::bradley_terry(judges_of(draw).all).scale.intervals[0], truth);
+  return holds(analysis::bradley_terry(judges_of(draw)).scale.intervals[0], truth);
 }
 
 std::optional<Outcome> thurstone_value(const StudyDraw& draw) {
   static const double truth = [] {
     core::Rng rng{4};
-    return analysis::thurstone_case_v(judges_of({many, rng}).all).values[0];
+    return analysis::thurstone_case_v({sum(judges_of({many, rng}))}).values[0];
   }();
-  return holds(analysis::thurstone_case_v(judges_of(draw).all).intervals[0], truth);
+  return holds(analysis::thurstone_case_v(judges_of(draw)).intervals[0], truth);
 }
 
 double share_preferred(const Judges& judges, std::vector<analysis::Proportion>& people) {
   double mean = 0.0;
-  for (const auto& counts : judges.people) {
+  for (const auto& counts : judges) {
     people.push_back(
         {counts.wins.row(0).sum(), counts.wins.row(0).sum() + counts.wins.col(0).sum()});
-    mean += people.back().value() / static_cast<double>(judges.people.size());
+    mean += people.back().value() / static_cast<double>(judges.size());
   }
   return mean;
 }
@@ -103,10 +99,11 @@ std::optional<Outcome> declared_preferred(const StudyDraw& draw) {
 }
 
 // Places by exponential times of people who differ: Plackett and Luce's model for each.
-std::vector<analysis::Ranking> rankings_of(const StudyDraw& draw) {
-  std::vector<analysis::Ranking> rankings;
+std::vector<std::vector<analysis::Ranking>> rankings_of(const StudyDraw& draw) {
+  std::vector<std::vector<analysis::Ranking>> all;
   for (int person = 0; person < draw.people; ++person) {
     const Values own = values_of_person(draw.rng);
+    std::vector<analysis::Ranking>& rankings = all.emplace_back();
     for (int i = 0; i < 3; ++i) {
       std::array<std::pair<double, std::size_t>, items> times;
       for (std::size_t item = 0; item < items; ++item) {
@@ -119,7 +116,7 @@ std::vector<analysis::Ranking> rankings_of(const StudyDraw& draw) {
       }
     }
   }
-  return rankings;
+  return all;
 }
 
 std::optional<Outcome> worth(const StudyDraw& draw) {

@@ -70,8 +70,9 @@ std::string words_of(const Row& row, const Cell& cell) {
       share += one.value / given;
     }
   }
-  const double low = is_size ? 0.03 : 0.93;
-  const double high = is_size ? 0.07 : 0.97;
+  constexpr double rounding = 1e-9;
+  const double low = (is_size ? 0.03 : 0.93) - rounding;
+  const double high = (is_size ? 0.07 : 0.97) + rounding;
   const bool is_discrete = is_size && share < low && is_as_near_as_can_be(cell.outcomes, low);
   const char* const mark = is_discrete ? "°" : share < low || share > high ? "!" : "";
   return fmt::format("{:.3f}{}{}", share, mark, without);

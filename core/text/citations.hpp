@@ -104,6 +104,10 @@ inline constexpr std::array references{
     Reference{"Liesefeld & Janczyk 2019",
               "Liesefeld, H. R. & Janczyk, M. (2019). Combining speed and accuracy to control for "
               "speed-accuracy trade-offs(?). Behavior Research Methods 51, 40–60."},
+    Reference{"Lipsitz, Dear & Zhao 1994",
+              "Lipsitz, S. R., Dear, K. B. G. & Zhao, L. (1994). Jackknife estimators of variance "
+              "for parameter estimates from estimating equations with applications to clustered "
+              "survival data. Biometrics 50, 842–846."},
     Reference{"Luce 1959",
               "Luce, R. D. (1959). Individual Choice Behavior: A Theoretical Analysis. Wiley."},
     Reference{"Luce 1963",

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 
+#include "analysis/report/blocks/scale_intervals.hpp"
 #include "analysis/report/document/sections.hpp"
 #include "analysis/report/document/wording.hpp"
 #include "analysis/statistics/population/means.hpp"
@@ -108,16 +109,19 @@ void judge_consistency(ParticipantPreferences& person) {
 }
 
 void add_scales(PreferenceResults& results) {
+  std::vector<PairedCounts> people;
+  std::ranges::transform(results.participants, std::back_inserter(people),
+                         &ParticipantPreferences::counts);
   // Comparisons may not connect the items; for Thurstone ties do.
   try {
-    BradleyTerry found = bradley_terry(results.counts);
+    BradleyTerry found = bradley_terry(people);
     results.bradley_terry = std::move(found.scale);
     results.nu = found.nu;
   } catch (const core::NotEstimable& error) {
     results.no_scale = error.what();
   }
   try {
-    results.thurstone = thurstone_case_v(results.counts);
+    results.thurstone = thurstone_case_v(people);
   } catch (const core::NotEstimable& error) {
     results.no_scale = error.what();
   }
@@ -155,7 +159,9 @@ PreferenceResults preference_results(const BlockDesign& design,
     judge_consistency(person);
     results.participants.push_back(std::move(person));
   }
-  add_scales(results);
+  if (!results.participants.empty()) {
+    add_scales(results);
+  }
   return results;
 }
 
@@ -182,9 +188,11 @@ std::vector<MainResult> shares_preferred(const BlockDesign& design,
 }
 
 ReportTable scale_table(const BlockDesign& design, const PreferenceResults& results) {
+  const char* const interval_words = words_of_scale_interval(results.participants.size());
   const Column bradley =
-      interval_column("Bradley-Terry (95 %, answers independent)", "bradley_terry");
-  const Column thurstone = interval_column("Thurstone V (95 %, answers independent)", "thurstone");
+      interval_column(fmt::format("Bradley-Terry ({})", interval_words), "bradley_terry");
+  const Column thurstone =
+      interval_column(fmt::format("Thurstone V ({})", interval_words), "thurstone");
   ReportTable table{"scale",
                     "Scales of the stimuli, mean 0",
                     {column("stimulus", "stimulus"), proportion_column("preferred", "preferred"),
@@ -296,10 +304,10 @@ std::vector<CitingText> remarks_on(const BlockDesign& design, const PreferenceRe
   std::vector<CitingText> remarks;
   if (results.no_scale.empty()) {
     remarks.emplace_back(
-        core::citing("Scales by maximum likelihood, intervals of plus or minus 1.96 standard "
-                     "errors; both take all answers as independent. Bradley-Terry ({}): logarithms "
+        core::citing("Scales by maximum likelihood of all answers. Bradley-Terry ({}): logarithms "
                      "of abilities; Thurstone's Case V ({}): standard deviations of a difference.",
                      "Bradley & Terry 1952"_source, "Thurstone 1927"_source));
+    remarks.push_back(remark_on_scale_interval(results.participants.size()));
   } else {
     std::string items;
     for (std::size_t i = 0; i < design.stimuli.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "analysis/report/blocks/ratings.hpp"
+#include "analysis/report/blocks/scale_intervals.hpp"
 #include "analysis/report/document/sections.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -55,7 +56,12 @@ void add_tests(const BlockDesign& design, RankingResults& results) {
   }
 }
 
-void add_worths(const std::vector<Ranking>& rankings, RankingResults& results) {
+void add_worths(const std::map<std::string, std::vector<Ranking>>& people,
+                RankingResults& results) {
+  std::vector<std::vector<Ranking>> rankings;
+  for (const auto& [name, own] : people) {
+    rankings.push_back(own);
+  }
   try {
     results.worths = plackett_luce(rankings, results.stimuli.size());
   } catch (const core::NotEstimable& error) {  // a stimulus that was never behind another
@@ -69,23 +75,21 @@ RankingResults ranking_results(const BlockDesign& design, const std::vector<Answ
   const std::size_t count = design.stimuli.size();
   std::ranges::transform(design.stimuli, std::back_inserter(results.stimuli), &Item::name);
   results.places.assign(count, std::vector<int>(count, 0));
-  std::vector<Ranking> all;
   std::map<std::string, std::vector<Ranking>> people;
   for (const AnswerRow& answer : answers) {
     const Ranking ranking = ranking_of(design, answer);
     for (std::size_t place = 0; place < count; ++place) {
       ++results.places[ranking[place]][place];
     }
-    all.push_back(ranking);
+    ++results.rankings;
     people[answer.participant_id].push_back(ranking);
   }
-  results.rankings = static_cast<int>(all.size());
   for (const auto& [name, rankings] : people) {
     results.participants.push_back(name);
     results.mean_places.push_back(mean_places(rankings, count));
   }
   add_tests(design, results);
-  add_worths(all, results);
+  add_worths(people, results);
   return results;
 }
 
@@ -101,7 +105,9 @@ double mean_place(const std::vector<int>& counts) {
 }
 
 ReportTable stimuli_table(const RankingResults& results) {
-  const Column of_worth = interval_column("log worth (95 %, answers independent)", "log_worth");
+  const Column of_worth = interval_column(
+      fmt::format("log worth ({})", words_of_scale_interval(results.participants.size())),
+      "log_worth");
   ReportTable table{"stimuli",
                     "Places of each stimulus; 1 is the best",
                     {column("stimulus", "stimulus"), column("mean place", "mean_place"), of_worth}};
@@ -122,7 +128,9 @@ ReportTable stimuli_table(const RankingResults& results) {
 
 ReportTable pairs_table(const RankingResults& results) {
   const Column of_difference =
-      interval_column("log worth, difference (95 %, answers independent)", "difference");
+      interval_column(fmt::format("log worth, difference ({})",
+                                  words_of_scale_interval(results.participants.size())),
+                      "difference");
   ReportTable table{
       "pairs",
       core::citing("Pairs of stimuli: signed-rank tests ({}) of participants' mean places",
@@ -148,12 +156,11 @@ std::vector<CitingText> remarks_on(const RankingResults& results) {
   if (results.rankings == 0) {
     return {"There are no answers."};
   }
-  return {
+  std::vector<CitingText> remarks{
       results.no_worths.empty()
           ? core::citing(
                 "Worths ({}; {}): each place goes to one of the stimuli that are left in "
-                "proportion to its worth. Natural logarithms, mean 0, by maximum likelihood; "
-                "intervals of plus or minus 1.96 standard errors take all rankings as independent.",
+                "proportion to its worth. Natural logarithms, mean 0, by maximum likelihood.",
                 "Plackett 1975"_source, "Luce 1959"_source)
           : core::citing("There are no worths: {}.", results.no_worths),
       results.no_tests.empty()
@@ -161,6 +168,10 @@ std::vector<CitingText> remarks_on(const RankingResults& results) {
                          "Two-sided p of pairs, and the same adjusted for their number ({}).",
                          "Holm 1979"_source)
           : core::citing("Not tested: {}.", results.no_tests)};
+  if (results.no_worths.empty()) {
+    remarks.push_back(remark_on_scale_interval(results.participants.size()));
+  }
+  return remarks;
 }
 }  // namespace
 

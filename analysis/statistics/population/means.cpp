@@ -184,6 +184,9 @@ std::optional<Interval> bca_interval(const std::vector<double>& values, int draw
 std::optional<Interval> bootstrap_interval(const std::vector<double>& values, int draws,
                                            std::uint64_t seed) {
   check_values(values);
+  if (values.size() < fewest_to_draw_from) {
+    return std::nullopt;
+  }
   const auto n = static_cast<double>(values.size());
   const double expanded_tail = normal_cdf(-std::sqrt(n / (n - 1.0)) * t_quantile(0.975, n - 1.0));
   return bca_interval(values, draws, seed, expanded_tail);

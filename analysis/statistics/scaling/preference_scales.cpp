@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <vector>
 
 #include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/population/means.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -59,6 +61,17 @@ bool is_count_matrix(const Eigen::MatrixXi& counts, Eigen::Index items) {
 }
 }  // namespace
 
+PairedCounts sum(const std::vector<PairedCounts>& participants) {
+  PairedCounts all;
+  for (const PairedCounts& own : participants) {
+    all.wins = all.wins.size() == 0 ? own.wins : Eigen::MatrixXi{all.wins + own.wins};
+    all.ties = all.ties.size() == 0   ? own.ties
+               : own.ties.size() == 0 ? all.ties
+                                      : Eigen::MatrixXi{all.ties + own.ties};
+  }
+  return all;
+}
+
 void check_comparisons(const PairedCounts& counts, TiesConnect ties) {
   const Eigen::Index items = counts.items();
   if (items < 2 || !is_count_matrix(counts.wins, items)) {
@@ -84,9 +97,26 @@ void check_comparisons(const PairedCounts& counts, TiesConnect ties) {
 }
 
 namespace {
-Interval interval_of(double value, double standard_error) {
-  const double half_width = normal_quantile(0.975) * standard_error;
-  return {value - half_width, value + half_width};
+// Of a difference or a value, which the contrast gives. Not a number: unknown.
+double variance_of(const PreferenceScale& scale, const Eigen::VectorXd& contrast) {
+  const double least = contrast.dot(scale.least_covariance * contrast);
+  const double own = contrast.dot(scale.covariance * contrast);
+  return std::isnan(own) ? own : std::max(least, own);
+}
+
+Interval interval_of(double value, double standard_error, double freedom) {
+  if (std::isnan(standard_error)) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return {-infinity, infinity};
+  }
+  const double quantile = std::isinf(freedom) ? normal_quantile(0.975) : t_quantile(0.975, freedom);
+  return {value - quantile * standard_error, value + quantile * standard_error};
+}
+
+double two_sided_p(double ratio, double freedom) {
+  return std::isnan(ratio)     ? 1.0
+         : std::isinf(freedom) ? normal_two_sided_p(ratio)
+                               : f_p(ratio * ratio, 1.0, freedom);
 }
 
 // 1/m among the items' values: the projection on what differences do not determine.
@@ -105,10 +135,11 @@ ScaleDifference difference(const PreferenceScale& scale, Eigen::Index i, Eigen::
   }
   ScaleDifference result;
   result.value = scale.values[i] - scale.values[j];
-  result.standard_error =
-      std::sqrt(scale.covariance(i, i) + scale.covariance(j, j) - 2.0 * scale.covariance(i, j));
-  result.interval = interval_of(result.value, result.standard_error);
-  result.p = normal_two_sided_p(result.value / result.standard_error);
+  Eigen::VectorXd contrast = Eigen::VectorXd::Unit(items, i);
+  contrast[j] = -1.0;
+  result.standard_error = std::sqrt(variance_of(scale, contrast));
+  result.interval = interval_of(result.value, result.standard_error, scale.freedom);
+  result.p = two_sided_p(result.value / result.standard_error, scale.freedom);
   return result;
 }
 
@@ -139,13 +170,49 @@ ScaleMaximum maximise_scale(const ScaleLikelihood& likelihood, Eigen::Index item
   return {at, determined.ldlt().solve(identity) - projection, here.value};
 }
 
-PreferenceScale scale_of(const ScaleMaximum& maximum, Eigen::Index items) {
-  PreferenceScale scale{maximum.at.head(items),
-                        maximum.covariance.topLeftCorner(items, items),
-                        {},
-                        maximum.log_likelihood};
+namespace {
+// Over participants; not a number where one of them alone tells of an item.
+Eigen::MatrixXd covariance_over(const std::vector<LikelihoodAt>& participants,
+                                const Eigen::MatrixXd& projection) {
+  const Eigen::Index parameters = projection.rows();
+  Eigen::MatrixXd information = projection;
+  for (const LikelihoodAt& own : participants) {
+    information += own.information;
+  }
+  const auto n = static_cast<double>(participants.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(parameters, parameters);
+  for (const LikelihoodAt& own : participants) {
+    const Eigen::LDLT<Eigen::MatrixXd> of_others{information - own.information};
+    constexpr double smallest = 1e-9;
+    if (!(of_others.vectorD().minCoeff() > smallest * of_others.vectorD().maxCoeff())) {
+      return Eigen::MatrixXd::Constant(parameters, parameters, std::nan(""));
+    }
+    const Eigen::VectorXd change = of_others.solve(own.score);
+    covariance += (n - 1.0) / n * change * change.transpose();
+  }
+  return covariance;
+}
+}  // namespace
+
+PreferenceScale scale_of(const ScaleMaximum& maximum,
+                         const std::vector<ScaleLikelihood>& participants, Eigen::Index items) {
+  PreferenceScale scale;
+  scale.values = maximum.at.head(items);
+  scale.covariance = maximum.covariance.topLeftCorner(items, items);
+  scale.least_covariance = Eigen::MatrixXd::Zero(items, items);
+  scale.log_likelihood = maximum.log_likelihood;
+  if (participants.size() > 1) {
+    std::vector<LikelihoodAt> people;
+    std::ranges::transform(participants, std::back_inserter(people),
+                           [&](const ScaleLikelihood& own) { return own(maximum.at); });
+    scale.least_covariance = share_of_binomial * scale.covariance;
+    scale.covariance =
+        covariance_over(people, undetermined(items, maximum.at.size())).topLeftCorner(items, items);
+    scale.freedom = static_cast<double>(people.size()) - 1.0;
+  }
   for (Eigen::Index i = 0; i < items; ++i) {
-    scale.intervals.push_back(interval_of(scale.values[i], std::sqrt(scale.covariance(i, i))));
+    const double variance = variance_of(scale, Eigen::VectorXd::Unit(items, i));
+    scale.intervals.push_back(interval_of(scale.values[i], std::sqrt(variance), scale.freedom));
   }
   return scale;
 }
@@ -178,6 +245,22 @@ void add_pair(const std::array<Answer, 3>& answers, std::size_t kinds, const Eig
   sum.information -= total * mean * mean.transpose();
 }
 
+using LikelihoodOfCounts = LikelihoodAt (*)(const PairedCounts&, const Eigen::VectorXd&);
+
+// Valid as long as the counts are.
+ScaleLikelihood likelihood_by(LikelihoodOfCounts likelihood, const PairedCounts& counts) {
+  return [likelihood, &counts](const Eigen::VectorXd& at) { return likelihood(counts, at); };
+}
+
+std::vector<ScaleLikelihood> likelihoods_by(LikelihoodOfCounts likelihood,
+                                            const std::vector<PairedCounts>& participants) {
+  std::vector<ScaleLikelihood> all;
+  for (const PairedCounts& counts : participants) {
+    all.push_back(likelihood_by(likelihood, counts));
+  }
+  return all;
+}
+
 // Parameters: the items' values, then ln nu if there are ties.
 LikelihoodAt likelihood_of_bradley_terry(const PairedCounts& counts, const Eigen::VectorXd& at) {
   const Eigen::Index items = counts.items();
@@ -201,14 +284,15 @@ LikelihoodAt likelihood_of_bradley_terry(const PairedCounts& counts, const Eigen
 }
 }  // namespace
 
-BradleyTerry bradley_terry(const PairedCounts& counts) {
+BradleyTerry bradley_terry(const std::vector<PairedCounts>& participants) {
+  const PairedCounts counts = sum(participants);
   check_comparisons(counts, TiesConnect::no);
   const Eigen::Index items = counts.items();
   const bool has_ties = counts.ties.size() != 0 && counts.ties.sum() > 0;
-  const ScaleMaximum maximum = maximise_scale(
-      [&](const Eigen::VectorXd& at) { return likelihood_of_bradley_terry(counts, at); }, items,
-      has_ties ? items + 1 : items);
-  return {scale_of(maximum, items), has_ties ? std::exp(maximum.at[items]) : 0.0};
+  const ScaleMaximum maximum = maximise_scale(likelihood_by(likelihood_of_bradley_terry, counts),
+                                              items, has_ties ? items + 1 : items);
+  return {scale_of(maximum, likelihoods_by(likelihood_of_bradley_terry, participants), items),
+          has_ties ? std::exp(maximum.at[items]) : 0.0};
 }
 
 namespace {
@@ -240,13 +324,12 @@ LikelihoodAt likelihood_of_thurstone(const PairedCounts& counts, const Eigen::Ve
 }
 }  // namespace
 
-PreferenceScale thurstone_case_v(const PairedCounts& counts) {
+PreferenceScale thurstone_case_v(const std::vector<PairedCounts>& participants) {
+  const PairedCounts counts = sum(participants);
   check_comparisons(counts, TiesConnect::yes);
   const Eigen::Index items = counts.items();
-  return scale_of(
-      maximise_scale([&](const Eigen::VectorXd& at) { return likelihood_of_thurstone(counts, at); },
-                     items, items),
-      items);
+  return scale_of(maximise_scale(likelihood_by(likelihood_of_thurstone, counts), items, items),
+                  likelihoods_by(likelihood_of_thurstone, participants), items);
 }
 
 Consistency consistency(const Eigen::MatrixXi& is_preferred) {
@@ -306,21 +389,30 @@ bool is_ranking(Ranking ranking, std::size_t items) {
   return ranking == all;
 }
 
-PreferenceScale plackett_luce(const std::vector<Ranking>& rankings, std::size_t items) {
-  for (const Ranking& ranking : rankings) {
-    if (!is_ranking(ranking, items)) {
-      throw core::InvalidInput{"a ranking holds every item once"};
-    }
-  }
-  check_comparisons(pairs_of(rankings, items), TiesConnect::no);
+PreferenceScale plackett_luce(const std::vector<std::vector<Ranking>>& participants,
+                              std::size_t items) {
+  std::vector<Ranking> all;
+  std::vector<ScaleLikelihood> likelihoods;
   const auto count = static_cast<Eigen::Index>(items);
-  const auto likelihood = [&](const Eigen::VectorXd& at) {
-    LikelihoodAt sum{0.0, Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Zero(count, count)};
-    for (const Ranking& ranking : rankings) {
-      add(ranking, at, sum);
-    }
-    return sum;
+  const auto likelihood_by = [count](const std::vector<Ranking>& rankings) {
+    return [count, &rankings](const Eigen::VectorXd& at) {
+      LikelihoodAt sum{0.0, Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Zero(count, count)};
+      for (const Ranking& ranking : rankings) {
+        add(ranking, at, sum);
+      }
+      return sum;
+    };
   };
-  return scale_of(maximise_scale(likelihood, count, count), count);
+  for (const std::vector<Ranking>& own : participants) {
+    for (const Ranking& ranking : own) {
+      if (!is_ranking(ranking, items)) {
+        throw core::InvalidInput{"a ranking holds every item once"};
+      }
+      all.push_back(ranking);
+    }
+    likelihoods.emplace_back(likelihood_by(own));
+  }
+  check_comparisons(pairs_of(all, items), TiesConnect::no);
+  return scale_of(maximise_scale(likelihood_by(all), count, count), likelihoods, count);
 }
 }  // namespace tapstudy::analysis

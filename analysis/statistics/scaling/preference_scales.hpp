@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct PairedCounts {
   int ties_of(Eigen::Index i, Eigen::Index j) const { return ties.size() == 0 ? 0 : ties(i, j); }
 };
 
+// Of all participants, of the same items.
+PairedCounts sum(const std::vector<PairedCounts>& participants);
+
 enum class TiesConnect { no, yes };
 // Throws InvalidInput for fewer than two items, matrices of other shapes, negative counts, and
 // where the items fall into two groups of which no member of one was ever preferred to any of the
@@ -24,11 +28,20 @@ enum class TiesConnect { no, yes };
 // preference in both directions.
 void check_comparisons(const PairedCounts& counts, TiesConnect ties);
 
-// Items on an interval scale whose mean is 0.
+// Items on an interval scale whose mean is 0. Of one participant the covariance is by the
+// information, which takes answers as independent. Of n participants who differ, of whom these are
+// a sample, it is by leaving out each of them, one step of Newton's from the maximum (Lipsitz, Dear
+// & Zhao 1994):
+//   (n - 1) / n sum d_i d_i^T,   d_i = (H - H_i)^-1 s_i
+// with their scores s_i and informations H_i, which add up to H. No variance is taken for less than
+// share_of_binomial of that by H, because few people may agree by chance. It is not a number where
+// an item was judged by one of them alone; intervals are infinite then.
 struct PreferenceScale {
   Eigen::VectorXd values;
-  Eigen::MatrixXd covariance;       // by the information; rows and columns sum to 0
-  std::vector<Interval> intervals;  // 95 %, values +- 1.96 standard errors
+  Eigen::MatrixXd covariance;                               // rows and columns sum to 0
+  Eigen::MatrixXd least_covariance;                         // of one participant 0
+  double freedom{std::numeric_limits<double>::infinity()};  // n - 1 of n participants
+  std::vector<Interval> intervals;  // 95 %, by t; of one participant values +- 1.96 standard errors
   double log_likelihood{};          // without multinomial coefficients
 };
 
@@ -36,7 +49,7 @@ struct ScaleDifference {
   double value{};
   double standard_error{};
   Interval interval;  // 95 %
-  double p{};         // two-sided, by Wald's test of no difference
+  double p{};         // two-sided, by Wald's test of no difference, or by t
 };
 // values[i] - values[j]. Throws InvalidInput unless i and j are two different items.
 ScaleDifference difference(const PreferenceScale& scale, Eigen::Index i, Eigen::Index j);
@@ -60,8 +73,10 @@ struct ScaleMaximum {
 ScaleMaximum maximise_scale(const ScaleLikelihood& likelihood, Eigen::Index items,
                             Eigen::Index parameters);
 
-// The scale of a maximum, with the intervals of its first `items` parameters.
-PreferenceScale scale_of(const ScaleMaximum& maximum, Eigen::Index items);
+// The scale of the maximum of the sum of participants' likelihoods, with the intervals of its first
+// `items` parameters.
+PreferenceScale scale_of(const ScaleMaximum& maximum,
+                         const std::vector<ScaleLikelihood>& participants, Eigen::Index items);
 
 // Bradley & Terry 1952, Luce 1959, with ties after Davidson 1970. With values v,
 //   P(i preferred to j) : P(j to i) : P(tie) = exp(v_i) : exp(v_j) : nu exp((v_i + v_j) / 2),
@@ -72,13 +87,13 @@ struct BradleyTerry {
 };
 // Maximum likelihood. Throws InvalidInput as check_comparisons does (ties do not connect: a nu that
 // grows with the distance may explain them).
-BradleyTerry bradley_terry(const PairedCounts& counts);
+BradleyTerry bradley_terry(const std::vector<PairedCounts>& participants);
 
 // Thurstone 1927, Case V, by maximum likelihood: P(i preferred to j) = Phi(v_i - v_j). The unit is
 // the standard deviation of a difference of two impressions, sqrt 2 of that of one. A tie counts as
 // half a preference in each direction. Throws InvalidInput as check_comparisons does (ties
 // connect).
-PreferenceScale thurstone_case_v(const PairedCounts& counts);
+PreferenceScale thurstone_case_v(const std::vector<PairedCounts>& participants);
 
 // One judge's consistency (Kendall & Babington Smith 1940).
 struct Consistency {
@@ -98,9 +113,10 @@ bool is_ranking(Ranking ranking, std::size_t items);
 // Luce 1959; Plackett 1975. With worths exp(v), each place goes to one of the items that are left,
 // in proportion to its worth:
 //   P(ranking) = product over places k of exp(v_k) / sum over places l >= k of exp(v_l).
-// The scale by maximum likelihood, all rankings independent. Throws InvalidInput for fewer than two
-// items, rankings that are not of every item once, and where the items fall into two groups of
-// which no member of one ever stood before any of the other: their distance is infinite (Hunter
-// 2004).
-PreferenceScale plackett_luce(const std::vector<Ranking>& rankings, std::size_t items);
+// The scale by maximum likelihood, of each participant's rankings. Throws InvalidInput for fewer
+// than two items, rankings that are not of every item once, and where the items fall into two
+// groups of which no member of one ever stood before any of the other: their distance is infinite
+// (Hunter 2004).
+PreferenceScale plackett_luce(const std::vector<std::vector<Ranking>>& participants,
+                              std::size_t items);
 }  // namespace tapstudy::analysis

@@ -143,16 +143,26 @@ TEST_CASE("the report's scales are those of the counted preferences and hold the
           "[analysis][preferences]") {
   const auto answers = judges(10, 10, 3);
   PairedCounts counts{Eigen::MatrixXi::Zero(4, 4), {}};
+  std::map<std::string, PairedCounts> people;
   const auto place = [](const std::string& name) {
     return std::ranges::find(names, name) - names.begin();
   };
   for (const results::AnswerRow& answer : answers) {
     const bool is_first = answer.response == answer.alternatives[0].stimulus;
-    ++counts.wins(place(answer.response), place(answer.alternatives[is_first ? 1 : 0].stimulus));
+    const auto other = place(answer.alternatives[is_first ? 1 : 0].stimulus);
+    ++counts.wins(place(answer.response), other);
+    PairedCounts& own =
+        people.try_emplace(answer.participant_id, PairedCounts{Eigen::MatrixXi::Zero(4, 4), {}})
+            .first->second;
+    ++own.wins(place(answer.response), other);
+  }
+  std::vector<PairedCounts> each;
+  for (const auto& [name, own] : people) {
+    each.push_back(own);
   }
   const auto json = reported(statistic, design_of(4), answers).json;
-  const BradleyTerry scale = bradley_terry(counts);
-  const PreferenceScale thurstone = thurstone_case_v(counts);
+  const BradleyTerry scale = bradley_terry(each);
+  const PreferenceScale thurstone = thurstone_case_v(each);
   for (std::size_t i = 0; i < 4; ++i) {
     const auto& row = json["scale"][i];
     const auto item = static_cast<Eigen::Index>(i);

@@ -75,7 +75,7 @@ std::string r_orders(const std::vector<Ranking>& all) {
 TEST_CASE("worths of rankings are those of a conditional logit of their choices",
           "[analysis][rankings]") {
   const std::vector<Ranking> all = rankings(60, 5);
-  const PreferenceScale scale = plackett_luce(all, 4);
+  const PreferenceScale scale = plackett_luce({all}, 4);
   const auto r = r_numbers(r_orders(all) + R"(library(survival)
     d <- do.call(rbind, lapply(seq_len(nrow(o)), function(i) do.call(rbind, lapply(1:3, function(k)
       data.frame(item = o[i, k:4], chosen = c(1, rep(0, 4 - k)), set = paste(i, k))))))
@@ -113,7 +113,7 @@ TEST_CASE("a report of rankings tests participants' mean places", "[analysis][ra
 TEST_CASE("a stimulus that is first in every ranking has no finite worth, and the report says so",
           "[analysis][rankings]") {
   const std::vector<Ranking> all{{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}};
-  CHECK_THROWS_AS(plackett_luce(all, 4), core::InvalidInput);
+  CHECK_THROWS_AS(plackett_luce({all}, 4), core::InvalidInput);
   const auto formats = reported("rankings", design(), answers_of(all, 3));
   CHECK(formats.json["stimuli"][0]["log_worth"].is_null());
   CHECK(formats.json["stimuli"][0]["place_1"] == 3);

@@ -142,6 +142,12 @@ TEST_CASE("of five values an expanded bootstrap interval holds the mean in 90 % 
   CHECK(plain < 0.88 * samples);
 }
 
+TEST_CASE("fewer than five values have no bootstrap interval", "[analysis][participants]") {
+  CHECK_FALSE(bootstrap_interval({0.1, 0.4, 0.2}, 999, 1));
+  CHECK_FALSE(bootstrap_interval({0.1, 0.4, 0.2, 0.6}, 999, 1));
+  CHECK(bootstrap_interval({0.1, 0.4, 0.2, 0.6, 0.3}, 999, 1));
+}
+
 TEST_CASE("participants who do not differ, or are all right, have an interval too",
           "[analysis][participants]") {
   const auto equal = mean_proportion({{4, 8}, {4, 8}, {4, 8}});

@@ -81,7 +81,7 @@ b <- BTm(cbind(w, l), one, two, ~ id, id = 'id', data = d, epsilon = 1e-15, maxi
 out(coef(b), sqrt(diag(vcov(b))), summary(b)$coefficients[, 4])
 )");
   REQUIRE(expected.size() == 9);
-  const auto ours = analysis::bradley_terry(without_ties);
+  const auto ours = analysis::bradley_terry({without_ties});
   CHECK(ours.nu == 0.0);
   check_differences(ours.scale, expected, 1e-9);
   for (Eigen::Index other = 1; other < 4; ++other) {
@@ -108,7 +108,7 @@ of <- N + 1:(m - 1)
 out(coef(g)[of], sqrt(diag(vcov(g)))[of], exp(coef(g)[['tied']]))
 )");
   REQUIRE(expected.size() == 7);
-  const auto ours = analysis::bradley_terry(with_ties);
+  const auto ours = analysis::bradley_terry({with_ties});
   check_differences(ours.scale, expected, 1e-9);
   CHECK(ours.nu == Approx(expected[6]).epsilon(1e-9));
 }
@@ -123,16 +123,16 @@ g <- suppressWarnings(update(g, start = coef(g)))
 out(coef(g), sqrt(diag(vcov(g))))
 )");
   REQUIRE(expected.size() == 6);
-  check_differences(analysis::thurstone_case_v(with_ties), expected, 1e-9);
+  check_differences(analysis::thurstone_case_v({with_ties}), expected, 1e-9);
 }
 
 TEST_CASE("two items are as far apart as the logit or probit of their preferences",
           "[analysis][paired]") {
   const PairedCounts counts = counts_of(square({0, 30, 10, 0}));
-  const auto logit = analysis::difference(analysis::bradley_terry(counts).scale, 0, 1);
+  const auto logit = analysis::difference(analysis::bradley_terry({counts}).scale, 0, 1);
   CHECK(logit.value == Approx(std::log(3.0)).epsilon(1e-10));
   CHECK(logit.standard_error == Approx(std::sqrt(1.0 / 30.0 + 1.0 / 10.0)).epsilon(1e-10));
-  CHECK(analysis::difference(analysis::thurstone_case_v(counts), 0, 1).value ==
+  CHECK(analysis::difference(analysis::thurstone_case_v({counts}), 0, 1).value ==
         Approx(0.674489750).epsilon(1e-9));
 }
 
@@ -141,20 +141,20 @@ TEST_CASE("items that comparisons do not connect are refused by their places",
   PairedCounts counts{square({0, 3, 2, 2, 1, 0, 2, 0, 0, 0, 0, 3, 0, 0, 1, 0}),
                       Eigen::MatrixXi::Zero(4, 4)};
   const auto refusal = Contains("of items 3, 4, none was ever preferred to any of items 1, 2");
-  CHECK_THROWS_WITH(analysis::bradley_terry(counts), refusal);
-  CHECK_THROWS_WITH(analysis::thurstone_case_v(counts), refusal);
+  CHECK_THROWS_WITH(analysis::bradley_terry({counts}), refusal);
+  CHECK_THROWS_WITH(analysis::thurstone_case_v({counts}), refusal);
   const PairedCounts reversed = counts_of(counts.wins.reverse());
-  CHECK_THROWS_WITH(analysis::bradley_terry(reversed),
+  CHECK_THROWS_WITH(analysis::bradley_terry({reversed}),
                     Contains("of items 1, 2, none was ever preferred to any of items 3, 4"));
   counts.ties(1, 3) = counts.ties(3, 1) = 1;  // half a preference of 4 to 2
-  CHECK_THROWS_WITH(analysis::bradley_terry(counts), refusal);
-  CHECK_NOTHROW(analysis::thurstone_case_v(counts));
+  CHECK_THROWS_WITH(analysis::bradley_terry({counts}), refusal);
+  CHECK_NOTHROW(analysis::thurstone_case_v({counts}));
 }
 
 TEST_CASE("paired counts of other shapes and pairs of one item are refused", "[analysis][paired]") {
   const auto refuses = [](const Eigen::MatrixXi& wins, const Eigen::MatrixXi& ties) {
-    CHECK_THROWS_AS(analysis::bradley_terry(counts_of(wins, ties)), core::InvalidInput);
-    CHECK_THROWS_AS(analysis::thurstone_case_v(counts_of(wins, ties)), core::InvalidInput);
+    CHECK_THROWS_AS(analysis::bradley_terry({counts_of(wins, ties)}), core::InvalidInput);
+    CHECK_THROWS_AS(analysis::thurstone_case_v({counts_of(wins, ties)}), core::InvalidInput);
   };
   const Eigen::MatrixXi fine = square({0, 3, 2, 0});
   refuses(Eigen::MatrixXi::Zero(1, 1), no_ties);
@@ -163,7 +163,7 @@ TEST_CASE("paired counts of other shapes and pairs of one item are refused", "[a
   refuses(-fine, no_ties);
   refuses(fine, square({0, 3, 2, 0}));
   refuses(fine, Eigen::MatrixXi::Zero(3, 3));
-  const auto scale = analysis::bradley_terry(counts_of(fine)).scale;
+  const auto scale = analysis::bradley_terry({counts_of(fine)}).scale;
   CHECK_THROWS_AS(analysis::difference(scale, 0, 0), core::InvalidInput);
   CHECK_THROWS_AS(analysis::difference(scale, 0, 2), core::InvalidInput);
 }
@@ -330,4 +330,49 @@ TEST_CASE("one participant has an exponent without an interval, and equal number
   const auto flat = analysis::power_law({{{1.0, 5.0}, {10.0, 5.0}}});
   CHECK(flat.exponent == 0.0);
   CHECK_FALSE(flat.r_squared);
+}
+
+TEST_CASE("of two items the interval over participants is that of a logit, each left out in turn",
+          "[analysis][paired]") {
+  const std::vector<std::pair<int, int>> answers{{9, 3}, {2, 4}, {10, 2}, {7, 5}};
+  std::vector<PairedCounts> people;
+  double wins = 0.0;
+  double all = 0.0;
+  for (const auto& [won, lost] : answers) {
+    people.push_back(counts_of(square({0, won, lost, 0})));
+    wins += won;
+    all += won + lost;
+  }
+  const double p = wins / all;
+  double variance = 0.0;
+  for (const auto& [won, lost] : answers) {
+    const double own = won + lost;
+    const double change = (won - own * p) / ((all - own) * p * (1.0 - p));
+    variance += 0.75 * change * change;
+  }
+  const auto logit = analysis::difference(analysis::bradley_terry(people).scale, 0, 1);
+  constexpr double t_of_three = 3.182446305284263;
+  CHECK(logit.value == Approx(std::log(p / (1.0 - p))).epsilon(1e-10));
+  CHECK(logit.standard_error == Approx(std::sqrt(variance)).epsilon(1e-9));
+  CHECK(logit.interval.high ==
+        Approx(logit.value + t_of_three * std::sqrt(variance)).epsilon(1e-9));
+}
+
+TEST_CASE("participants who agree do not make an interval of no width", "[analysis][paired]") {
+  const PairedCounts own = counts_of(square({0, 3, 1, 0}));
+  const auto of_all = analysis::difference(analysis::bradley_terry({own, own, own}).scale, 0, 1);
+  // independent answers: 1 / 9 + 1 / 3
+  CHECK(of_all.standard_error == Approx(std::sqrt(0.05 * (1.0 / 9.0 + 1.0 / 3.0))).epsilon(1e-9));
+}
+
+TEST_CASE("an item that one of several participants judged has an interval without ends",
+          "[analysis][paired]") {
+  const std::vector<PairedCounts> people{counts_of(square({0, 2, 3, 1, 0, 2, 1, 1, 0})),
+                                         counts_of(square({0, 2, 0, 1, 0, 0, 0, 0, 0})),
+                                         counts_of(square({0, 1, 0, 2, 0, 0, 0, 0, 0}))};
+  const auto last = analysis::difference(analysis::bradley_terry(people).scale, 0, 2);
+  CHECK(std::isfinite(last.value));
+  CHECK(std::isinf(last.interval.low));
+  CHECK(std::isinf(last.interval.high));
+  CHECK(last.p == 1.0);
 }

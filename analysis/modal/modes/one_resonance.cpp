@@ -119,25 +119,32 @@ void join(RepeatedMode& kept, RepeatedMode& part) {
   part.why = fmt::format("overlaps the mode at {:.5g} Hz and follows its amplitude",
                          frequency_hz_of(kept));
 }
+
+bool may_be_one(const RepeatedMode& a, const RepeatedMode& b) {
+  return may_be_part(a) && may_be_part(b) && overlap(a, b) && is_series_or_weak(a, b) &&
+         (a.standing == Standing::agreed || b.standing == Standing::agreed);
+}
+
+void join_if_one(const std::vector<FreeDecay>& decays, const std::vector<RepeatedMode>& modes,
+                 RepeatedMode& a, RepeatedMode& b) {
+  const PairAmplitudes pair = amplitudes(a, b, decays, modes);
+  if (assurance(pair) < one_shape) {
+    return;
+  }
+  if (energy_of(pair.one, a) >= energy_of(pair.other, b)) {
+    join(a, b);
+  } else {
+    join(b, a);
+  }
+}
 }  // namespace
 
 void join_resonances(const std::vector<FreeDecay>& decays, std::vector<RepeatedMode>& modes) {
   for (std::size_t i = 0; i < modes.size(); ++i) {
     for (std::size_t k = i + 1; k < modes.size(); ++k) {
-      RepeatedMode& a = modes[i];
-      RepeatedMode& b = modes[k];
-      const bool is_question = may_be_part(a) && may_be_part(b) && overlap(a, b) &&
-                               is_series_or_weak(a, b) &&
-                               (a.standing == Standing::agreed || b.standing == Standing::agreed);
-      if (!is_question) {
-        continue;
+      if (may_be_one(modes[i], modes[k])) {
+        join_if_one(decays, modes, modes[i], modes[k]);
       }
-      const PairAmplitudes pair = amplitudes(a, b, decays, modes);
-      if (assurance(pair) < one_shape) {
-        continue;
-      }
-      const bool is_first_stronger = energy_of(pair.one, a) >= energy_of(pair.other, b);
-      join(is_first_stronger ? a : b, is_first_stronger ? b : a);
     }
   }
 }

@@ -5,15 +5,11 @@ import os
 import subprocess
 import sys
 
-import load
+import timing
 
 PRIORITY, PERIOD_US, TICKS, ROUNDS = 80, 1000, 3000, 7
 SHARE = 0.999
 LATEST_US = 20000
-
-
-def quantile(late_us, share):
-    return sorted(late_us)[min(len(late_us) - 1, int(share * len(late_us)))]
 
 
 def ours(program):
@@ -41,17 +37,17 @@ def compare(name, program):
     for _ in range(ROUNDS):
         all_theirs += cyclictest()
         all_own += ours(program)
-    theirs, own = quantile(all_theirs, SHARE), quantile(all_own, SHARE)
+    theirs, own = (timing.quantile(sorted(late_us), SHARE) for late_us in (all_theirs, all_own))
     print(f"  {name:<10}{theirs:>12.0f}{own:>12.0f}{own / theirs:>10.2f}", flush=True)
 
 
 def main():
     program = os.path.abspath(sys.argv[1])
-    load.require("cyclictest", "stress-ng")
+    timing.require("cyclictest", "stress-ng")
     print(f"lateness [us], p99.9 of {ROUNDS} x {TICKS} ticks of {PERIOD_US} us at priority {PRIORITY}")
     print("              cyclictest    tapstudy     ratio")
     compare("idle", program)
-    with load.stress_ng():
+    with timing.stress_ng():
         compare("stress-ng", program)
 
 

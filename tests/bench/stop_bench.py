@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 
-import load
+import timing
 
 STALL_MS = {"kill": 0, "stop": 20}
 
@@ -21,20 +21,20 @@ def show(condition, program, count):
     for signal, stall_ms in STALL_MS.items():
         for priority in (80, 0):
             times_ms, never = stops(program, signal, count, priority)
-            shares = [times_ms[min(len(times_ms) - 1, int(share * len(times_ms)))] for share in (0.5, 0.99, 1.0)]
+            shares = [timing.quantile(times_ms, share) for share in (0.5, 0.99, 1.0)]
             late = sum(time > stall_ms + 7 for time in times_ms)
             print(f"  {condition:<10}{signal:<6}{priority:>9}" + "".join(f"{each:>9.1f}" for each in shares)
                   + f"{late:>9}{never:>7}", flush=True)
 
 
 def main():
-    load.require("stress-ng")
+    timing.require("stress-ng")
     program, count = os.path.abspath(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1000
     print(f"time from the signal to zero force [ms], {count} stops a row on {os.cpu_count()} processors;")
     print("late: more than 7 ms after the program counts as stalled or dead")
     print("            signal priority   median      p99    worst     late  never")
     show("idle", program, count)
-    with load.stress_ng():
+    with timing.stress_ng():
         show("stress-ng", program, count)
 
 

@@ -9,8 +9,8 @@ namespace tapstudy::analysis {
 //   steps   whole numbers from 1: counted, and their quartiles
 //   number  a number, or a mark on a line from 0 to 1: quartiles
 //   choice  one of the options: counted
+//   choices  one or more of them, with ';' between: each counted
 //   text    only how many there are
-// choices: several at once, with ';' between them.
 enum class QuestionnaireKind { steps, number, choice, choices, text };
 struct QuestionnaireItem {
   std::string name;

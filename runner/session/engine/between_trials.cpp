@@ -9,10 +9,10 @@
 namespace tapstudy::runner {
 protocols::FilledForms filled_forms(const std::vector<results::FormAnswerRow>& answers) {
   protocols::FilledForms filled;
-  std::string asked;
+  std::map<std::string, std::string> asked;  // where, by form
   for (const results::FormAnswerRow& row : answers) {
     protocols::FormAnswers& form = filled[row.form];
-    if (std::exchange(asked, row.form + row.asked) != row.form + row.asked) {
+    if (std::exchange(asked[row.form], row.asked) != row.asked) {
       form.clear();
     }
     if (row.answer) {

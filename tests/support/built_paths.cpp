@@ -15,6 +15,12 @@ std::string serial_board_program() {
 std::string dhd_program() {
   return TAPSTUDY_DHD;
 }
+std::string openhaptics_program() {
+  return TAPSTUDY_OPENHAPTICS;
+}
+std::string inverse3_program() {
+  return TAPSTUDY_INVERSE3;
+}
 std::string lab_program() {
   return TAPSTUDY_LAB;
 }

@@ -8,6 +8,8 @@ std::string tapstudy_program();
 std::string bridge_program();
 std::string serial_board_program();
 std::string dhd_program();
+std::string openhaptics_program();
+std::string inverse3_program();
 std::string lab_program();
 std::string stalling_player_program();
 }  // namespace tapstudy::testing

@@ -1,15 +1,8 @@
-#include <fcntl.h>
-#include <stdlib.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <new>
-
 #include "device/remote/remote_hand.hpp"
 #include "support/catch.hpp"
 #include "support/dhd/stand_in.hpp"
 #include "support/example_bridge.hpp"
+#include "support/mapped_stand_in.hpp"
 using namespace tapstudy;
 using core::TickFault;
 using core::Vec3;
@@ -20,32 +13,12 @@ namespace {
 // The bridge, built with a stand-in for the vendor's library, and the device that it sees.
 class DhdBench {
  public:
-  explicit DhdBench(bool has_watchdog = true)
-      : file_{std::filesystem::temp_directory_path() /
-              ("tapstudy_dhd_" + std::to_string(getpid()))} {
-    const int descriptor = open(file_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    REQUIRE(ftruncate(descriptor, sizeof(DhdStandIn)) == 0);
-    void* const mapped =
-        mmap(nullptr, sizeof(DhdStandIn), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
-    close(descriptor);
-    shared_ = new (mapped) DhdStandIn;
-    shared_->has_watchdog = has_watchdog;
-    setenv(DhdStandIn::variable, file_.c_str(), 1);
-  }
-  ~DhdBench() {
-    munmap(shared_, sizeof(DhdStandIn));
-    std::filesystem::remove(file_);
-  }
-  DhdBench(const DhdBench&) = delete;
-  DhdBench& operator=(const DhdBench&) = delete;
-  DhdBench(DhdBench&&) = delete;
-  DhdBench& operator=(DhdBench&&) = delete;
-  DhdStandIn& device() { return *shared_; }
-  Vec3 force_n() const { return {shared_->force_n[0], shared_->force_n[1], shared_->force_n[2]}; }
+  explicit DhdBench(bool has_watchdog = true) { device().has_watchdog = has_watchdog; }
+  DhdStandIn& device() { return shared_.device(); }
+  Vec3 force_n() { return {device().force_n[0], device().force_n[1], device().force_n[2]}; }
 
  private:
-  std::filesystem::path file_;
-  DhdStandIn* shared_{nullptr};
+  testing::MappedStandIn<DhdStandIn> shared_;
 };
 }  // namespace
 

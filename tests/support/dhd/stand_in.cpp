@@ -1,22 +1,14 @@
 #include "support/dhd/stand_in.hpp"
 
 #include <dhdc.h>
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
-#include <cstdlib>
+#include "support/mapped_stand_in.hpp"
 namespace {
 using tapstudy::testing::DhdStandIn;
 
 DhdStandIn& device() {
-  static DhdStandIn* const shared = [] {
-    const int file = open(std::getenv(DhdStandIn::variable), O_RDWR | O_CLOEXEC);
-    void* const mapped =
-        mmap(nullptr, sizeof(DhdStandIn), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    return static_cast<DhdStandIn*>(mapped);
-  }();
-  return *shared;
+  static DhdStandIn& shared = tapstudy::testing::mapped_by_test<DhdStandIn>();
+  return shared;
 }
 int outcome() {
   return device().is_gone ? -1 : 0;

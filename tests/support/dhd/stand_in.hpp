@@ -2,8 +2,8 @@
 #include <array>
 #include <atomic>
 namespace tapstudy::testing {
-// What the stand-in for a device of the DHD interface shares with the test that runs it: a file
-// mapped by both, named by the environment variable below.
+// What the stand-in for a device of the DHD interface shares with the test that runs it
+// (MappedStandIn).
 struct DhdStandIn {
   static constexpr const char* variable = "TAPSTUDY_DHD_STAND_IN";
   std::atomic<bool> has_watchdog{true};

@@ -1,0 +1,12 @@
+#pragma once
+#include <array>
+#include <atomic>
+namespace tapstudy::testing {
+// What the stand-in for a device of the HDAPI shares with the test that runs it (MappedStandIn).
+struct OpenHapticsStandIn {
+  static constexpr const char* variable = "TAPSTUDY_OPENHAPTICS_STAND_IN";
+  std::atomic<bool> is_gone{false};
+  std::atomic<bool> is_running{false};           // its servo loop
+  std::array<std::atomic<double>, 3> force_n{};  // of the last frame
+};
+}  // namespace tapstudy::testing

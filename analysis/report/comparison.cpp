@@ -201,7 +201,8 @@ std::string participants_of(const NamedSummary& study) {
 }
 
 IntervalEstimate estimate_of(const MainResult& result) {
-  return {result.estimate, result.range};
+  return {result.estimate, result.range,
+          result.people ? std::optional{*result.people - 1.0} : std::nullopt};
 }
 
 void add_rows(const MainResult& first, const MainResult& second, const NamedSummary& a,
@@ -338,8 +339,9 @@ Summary compare(const NamedSummary& first, const NamedSummary& second) {
   comparison.stated_methods = core::citing(
       "Estimates and 95 % intervals are those of the studies' own reports. Differences, and ratios "
       "of geometric means, take the two studies' participants for different people, with intervals "
-      "recovered from the estimates' own ({}), of ratios from their logarithms.",
-      "Zou & Donner 2008"_source);
+      "recovered from the estimates' own ({}; degrees of freedom of {}), of ratios from their "
+      "logarithms.",
+      "Zou & Donner 2008"_source, "Welch 1947"_source);
   return comparison;
 }
 }  // namespace tapstudy::analysis

@@ -6,6 +6,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "analysis/statistics/distributions.hpp"
@@ -235,16 +236,47 @@ std::vector<Interval> sison_glaz_intervals(const std::vector<int>& counts) {
   return intervals;
 }
 
+namespace {
+double quantile_of(const std::optional<double>& degrees_of_freedom) {
+  constexpr double upper = 0.975;
+  return degrees_of_freedom ? t_quantile(upper, *degrees_of_freedom) : normal_quantile(upper);
+}
+
+struct Distance {
+  double of_interval_end{};
+  std::optional<double> degrees_of_freedom;
+};
+
+Distance distance_of_sum(const Distance& a, const Distance& b) {
+  double variance = 0.0;
+  double squares = 0.0;  // of variances, each over its degrees of freedom
+  for (const Distance& one : {a, b}) {
+    const double error = one.of_interval_end / quantile_of(one.degrees_of_freedom);
+    variance += error * error;
+    squares += one.degrees_of_freedom ? std::pow(error, 4) / *one.degrees_of_freedom : 0.0;
+  }
+  if (!std::isfinite(variance)) {
+    return {std::numeric_limits<double>::infinity(), std::nullopt};
+  }
+  const std::optional<double> degrees_of_freedom =
+      squares > 0.0 ? std::optional{variance * variance / squares} : std::nullopt;
+  return {quantile_of(degrees_of_freedom) * std::sqrt(variance), degrees_of_freedom};
+}
+}  // namespace
+
 IntervalEstimate independent_difference(const IntervalEstimate& a, const IntervalEstimate& b) {
   const double difference = b.value - a.value;
-  return {difference,
-          {difference - std::hypot(b.value - b.interval.low, a.interval.high - a.value),
-           difference + std::hypot(b.interval.high - b.value, a.value - a.interval.low)}};
+  const Distance below = distance_of_sum({b.value - b.interval.low, b.degrees_of_freedom},
+                                         {a.interval.high - a.value, a.degrees_of_freedom});
+  const Distance above = distance_of_sum({b.interval.high - b.value, b.degrees_of_freedom},
+                                         {a.value - a.interval.low, a.degrees_of_freedom});
+  return {difference, {difference - below.of_interval_end, difference + above.of_interval_end}};
 }
 
 IntervalEstimate independent_ratio(const IntervalEstimate& a, const IntervalEstimate& b) {
   const auto map = [](const IntervalEstimate& of, auto to) {
-    return IntervalEstimate{to(of.value), {to(of.interval.low), to(of.interval.high)}};
+    return IntervalEstimate{
+        to(of.value), {to(of.interval.low), to(of.interval.high)}, of.degrees_of_freedom};
   };
   const auto log = [](double value) { return std::log(value); };
   const auto exp = [](double value) { return std::exp(value); };

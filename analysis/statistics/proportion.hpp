@@ -60,11 +60,15 @@ std::vector<Interval> sison_glaz_intervals(const std::vector<int>& counts);
 
 struct IntervalEstimate {
   double value{};
-  Interval interval;  // at any level, the same for all that are compared
+  Interval interval;  // 95 %
+  // Of the quantile of t that the interval is by; unset: the normal distribution's.
+  std::optional<double> degrees_of_freedom{};
 };
-// The difference b - a of estimates of independent samples, at the level of their own intervals:
-// the variance is recovered from the distances to the interval ends on the relevant side (MOVER;
-// Zou & Donner 2008). For score intervals of proportions it is Newcombe's (1998) method 10.
+// The difference b - a of estimates of independent samples: its variance is recovered from the
+// distances to the interval ends on the relevant side, each over its own quantile (MOVER; Zou &
+// Donner 2008), and the quantile of the difference has the degrees of freedom of that sum of
+// variances (Welch 1947). For score intervals of proportions it is Newcombe's (1998) method 10, for
+// means by t Welch's interval.
 IntervalEstimate independent_difference(const IntervalEstimate& a, const IntervalEstimate& b);
 // The ratio b / a of two estimates above 0, by the difference of their logarithms.
 IntervalEstimate independent_ratio(const IntervalEstimate& a, const IntervalEstimate& b);

@@ -308,7 +308,8 @@ std::shared_ptr<BlockSummary> summarise_adjustments(const BlockDesign& design,
          *results.equality->interval,
          {},
          {},
-         axis.is_logarithmic});
+         axis.is_logarithmic,
+         results.equality->participants});
   }
   return summary;
 }

@@ -417,6 +417,9 @@ std::vector<CitingText> remarks_on(const BlockDesign& design,
             "on, each counting the same; those "
             "of one participant take the answers as independent."
           : "The interval takes the answers as independent."};
+  if (const auto remark = remark_on_extreme_share(correct_of(results.participants))) {
+    remarks.emplace_back(*remark);
+  }
   if (!design.premise.empty()) {
     remarks.push_back("Not tested: " + design.premise);
   }
@@ -497,8 +500,8 @@ std::shared_ptr<BlockSummary> summarise_discrimination(const BlockDesign& design
   summary->personal = shares_right(design, results);
   const auto over = mean_share(correct_of(results.participants));
   if (over && over->interval) {
-    summary->main_results = {
-        {"share of right answers", over->mean, *over->interval, results.p, design.guess_rate}};
+    summary->main_results = {{"share of right answers", over->mean, *over->interval, results.p,
+                              design.guess_rate, false, over->participants}};
   }
   for (const PlannedHypothesis& planned : design.hypotheses) {
     summary->hypotheses.push_back(tested(design, results, planned));

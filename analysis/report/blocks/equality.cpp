@@ -311,8 +311,12 @@ std::shared_ptr<BlockSummary> summarise_equality(const BlockDesign& design, cons
   if (results.equality && results.equality->interval) {
     summary->main_results = {
         {"point of subjective equality, " + axis.name.with_unit(),
-         value_at(axis, results.equality->mean), values_at(axis, *results.equality->interval),
-         design.premise.empty() ? std::optional{results.equality->p} : std::nullopt}};
+         value_at(axis, results.equality->mean),
+         values_at(axis, *results.equality->interval),
+         design.premise.empty() ? std::optional{results.equality->p} : std::nullopt,
+         {},
+         false,
+         results.equality->participants}};
   }
   return summary;
 }

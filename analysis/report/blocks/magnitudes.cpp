@@ -252,7 +252,13 @@ std::shared_ptr<BlockSummary> summarise_magnitudes(const BlockDesign& design,
       summary->results().charts.push_back(chart_of(design, of));
       if (const auto& range = of.power_law->exponent_interval) {
         summary->main_results.push_back(
-            {"exponent of " + of.stimulus, of.power_law->exponent, *range});
+            {"exponent of " + of.stimulus,
+             of.power_law->exponent,
+             *range,
+             {},
+             {},
+             false,
+             static_cast<int>(of.power_law->participant_exponents.size())});
       }
     }
   }

@@ -181,7 +181,13 @@ std::vector<MainResult> shares_preferred(const BlockDesign& design,
   for (std::size_t i = 0; i < design.stimuli.size(); ++i) {
     const auto over = mean_share(shares_of_people(results, static_cast<Eigen::Index>(i)));
     if (over && over->interval) {
-      shares.push_back({"preferred: " + design.stimuli[i].label, over->mean, *over->interval});
+      shares.push_back({"preferred: " + design.stimuli[i].label,
+                        over->mean,
+                        *over->interval,
+                        {},
+                        {},
+                        false,
+                        over->participants});
     }
   }
   return shares;

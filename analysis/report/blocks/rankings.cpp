@@ -49,7 +49,7 @@ void add_tests(const BlockDesign& design, RankingResults& results) {
     return;
   }
   try {
-    results.friedman = friedman_test(results.mean_places);
+    results.friedman = friedman_test(results.mean_places, friedman_seed);
     results.pairwise = pairwise_signed_rank(results.mean_places);
   } catch (const core::NotEstimable& error) {  // too few participants
     results.no_tests = error.what();
@@ -164,9 +164,9 @@ std::vector<CitingText> remarks_on(const RankingResults& results) {
                 "Plackett 1975"_source, "Luce 1959"_source)
           : core::citing("There are no worths: {}.", results.no_worths),
       results.no_tests.empty()
-          ? core::citing("Tests take the mean of each participant's places of a stimulus. "
+          ? core::citing("Tests take the mean of each participant's places of a stimulus. {} "
                          "Two-sided p of pairs, and the same adjusted for their number ({}).",
-                         "Holm 1979"_source)
+                         words_of_permutation, "Holm 1979"_source)
           : core::citing("Not tested: {}.", results.no_tests)};
   if (results.no_worths.empty()) {
     remarks.push_back(remark_on_scale_interval(results.participants.size()));

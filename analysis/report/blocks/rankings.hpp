@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/report/document/block_summary.hpp"
-#include "analysis/statistics/rank_tests.hpp"
+#include "analysis/statistics/friedman_test.hpp"
 #include "analysis/statistics/scaling/preference_scales.hpp"
 namespace tapstudy::analysis {
 // Orders of all stimuli of a block, the best first.

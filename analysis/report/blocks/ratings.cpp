@@ -85,7 +85,7 @@ void add_medians(RatingResults& results, const std::string& name,
 
 void add_tests(RatingResults& results) {
   try {
-    results.friedman = friedman_test(results.medians);
+    results.friedman = friedman_test(results.medians, friedman_seed);
     results.pairwise = pairwise_signed_rank(results.medians);
   } catch (const core::NotEstimable& error) {  // too few participants or stimuli, or all alike
     results.no_tests = error.what();
@@ -127,12 +127,13 @@ ReportTable friedman_table(const std::optional<FriedmanTest>& test, std::size_t 
       "friedman",
       core::citing("Test of ranks over participants ({})", "Friedman 1937"_source),
       {column("participants", "participants"), column("chi squared", "chi_squared"),
-       column("df", "degrees_of_freedom"), column("p", "p"),
+       column("df", "degrees_of_freedom"), column("p by permutation", "p"),
+       column("exact", "is_exact"),
        column(core::citing("W ({})", "Kendall & Babington Smith 1939"_source), "kendalls_w")}};
   if (test) {
     table.rows.push_back({count(static_cast<std::int64_t>(participants)), number(test->chi_squared),
                           number(test->degrees_of_freedom), probability(test->p),
-                          number(test->kendalls_w)});
+                          flag(test->is_exact), number(test->kendalls_w)});
   }
   return table;
 }
@@ -165,8 +166,13 @@ std::vector<MainResult> means_over_participants(const std::string& what,
       of_stimulus.push_back(of_participant[i]);
     }
     if (const auto range = bounded_interval(of_stimulus, bounds)) {
-      means.push_back(
-          {fmt::format("{}: {}", what, stimuli[i]), mean_and_spread(of_stimulus).mean, *range});
+      means.push_back({fmt::format("{}: {}", what, stimuli[i]),
+                       mean_and_spread(of_stimulus).mean,
+                       *range,
+                       {},
+                       {},
+                       false,
+                       static_cast<int>(of_stimulus.size())});
     }
   }
   return means;
@@ -231,8 +237,8 @@ std::vector<CitingText> remarks_on(const RatingResults& results) {
   }
   remarks.push_back(
       results.no_tests.empty()
-          ? core::citing("Two-sided p of pairs, and the same adjusted for their number ({}).",
-                         "Holm 1979"_source)
+          ? core::citing("{} Two-sided p of pairs, and the same adjusted for their number ({}).",
+                         words_of_permutation, "Holm 1979"_source)
           : core::citing("Not tested: {}.", results.no_tests));
   return remarks;
 }

@@ -6,8 +6,8 @@
 
 #include "analysis/report/document/block_summary.hpp"
 #include "analysis/report/document/cells.hpp"
+#include "analysis/statistics/friedman_test.hpp"
 #include "analysis/statistics/quantiles.hpp"
-#include "analysis/statistics/rank_tests.hpp"
 namespace tapstudy::analysis {
 // Ratings from 1 to design.steps, or on a line from 0 to 1, of one presented stimulus a trial.
 struct StimulusRatings {
@@ -31,6 +31,10 @@ struct RatingResults {
 RatingResults rating_results(const BlockDesign& design,
                              const std::vector<results::AnswerRow>& answers);
 
+inline constexpr std::uint64_t friedman_seed = 9;
+inline constexpr auto words_of_permutation =
+    "The test of all has p by permuting each participant's ranks: of all orders where they can be "
+    "counted, else of 9999.";
 // "friedman": one row, none without a test.
 ReportTable friedman_table(const std::optional<FriedmanTest>& test, std::size_t participants);
 

@@ -330,7 +330,8 @@ MainResult mean_threshold(const VariedAxis& axis, const MeanLogThreshold& log_me
           {from_log(log_mean.interval.low), from_log(log_mean.interval.high)},
           {},
           {},
-          true};
+          true,
+          log_mean.participants};
 }
 
 // A threshold is where the function without guesses has a value that depends on its shape.

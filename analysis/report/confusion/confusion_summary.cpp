@@ -161,7 +161,8 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
   }
   if (accuracy_over_participants && accuracy_over_participants->interval) {
     main_results = {{"accuracy", accuracy_over_participants->mean,
-                     *accuracy_over_participants->interval, chance_p, matrix.chance()}};
+                     *accuracy_over_participants->interval, chance_p, matrix.chance(), false,
+                     accuracy_over_participants->participants}};
   }
   if (accuracy.trials > 0) {
     sections.push_back(accuracy_section(*this));

@@ -61,6 +61,8 @@ struct MainResult {
   std::optional<double> p{};       // of the planned test, where there is one
   std::optional<double> chance{};  // what guessing gives, of a share of right answers
   bool is_ratio{};                 // above 0, a geometric mean: studies are compared by the ratio
+  // The range is by t of one degree of freedom less; unset: by the normal distribution.
+  std::optional<int> people{};
 };
 
 // The alternatives of a trial as they were visited one after the other, by position from 0.

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,10 @@ std::string p_value(const HypothesisResult& result);
 // answers together, "(mean of 4 participants 61 %, 95 % CI 14–92 %)"; without an interval it says
 // why.
 std::string over_participants(const Proportion& all, const MeanShare& over);
+
+// The interval of a mean share near 0 or 1 of participants who differ much does not hold as often as
+// it says (measured: analysis/README); nothing of other means.
+std::optional<std::string> remark_on_extreme_share(const std::vector<Proportion>& participants);
 
 // What all participants answered, for a proportion_column: the counts together, with an interval
 // over participants (mean_share), because the answers of one are not independent of one

@@ -6,6 +6,7 @@
 #include "analysis/report/blocks/discrimination.hpp"
 #include "analysis/statistics/contingency/agreement.hpp"
 #include "analysis/statistics/contingency/similarity.hpp"
+#include "analysis/statistics/friedman_test.hpp"
 #include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/statistics/psychometric/inference.hpp"
@@ -199,7 +200,7 @@ TEST_CASE("exact tests have no smaller probabilities than they say, whatever par
 TEST_CASE("tests over participants have the probabilities that they say",
           "[analysis][statistics][slow]") {
   check_p("Friedman", Law::uniform,
-          [](Rng& rng) { return friedman_test(unrelated_ratings(30, rng)).p; });
+          [](Rng& rng) { return friedman_test(unrelated_ratings(30, rng), 1).p; });
   BlockDesign design;
   design.name = "pairs";
   design.guess_rate = 0.5;
@@ -262,7 +263,7 @@ TEST_CASE("intervals over participants who differ hold the truth as often as the
       }
     }
     const auto mean = mean_share(people);
-    return IntervalEstimate{mean->mean, *mean->interval};
+    return IntervalEstimate{mean->mean, *mean->interval, mean->participants - 1.0};
   };
   CHECK(holding_0([&](Rng& rng) {
           const IntervalEstimate first = study(rng);

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <limits>
+
 #include "analysis/report/document/wording.hpp"
+#include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/resampling/null_tables.hpp"
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
@@ -175,6 +178,25 @@ TEST_CASE("differences of proportions have Newcombe's interval", "[analysis][pro
   CHECK(wilson_interval({56, 70}).high == Approx(r[3]).epsilon(1e-9));
   CHECK(difference.interval.low == Approx(r[4]).epsilon(1e-9));
   CHECK(difference.interval.high == Approx(r[5]).epsilon(1e-9));
+}
+
+TEST_CASE("the difference of means whose intervals are by t has Welch's interval, as R's t.test",
+          "[analysis][proportion]") {
+  const std::vector<double> x{1.0, 2.5, 4.0};
+  const std::vector<double> y{3.0, 9.0, 4.5, 7.0, 6.0};
+  const auto estimate = [](const std::vector<double>& values) {
+    const Interval range = t_interval(values);
+    return IntervalEstimate{0.5 * (range.low + range.high), range,
+                            static_cast<double>(values.size()) - 1.0};
+  };
+  const auto ours = independent_difference(estimate(x), estimate(y));
+  const auto r = testing::r_numbers("t <- t.test(" + testing::r_vector(y) + ", " +
+                                    testing::r_vector(x) + "); out(t$conf.int)");
+  CHECK(ours.interval.low == Approx(r[0]).epsilon(1e-9));
+  CHECK(ours.interval.high == Approx(r[1]).epsilon(1e-9));
+  // of an estimate without a limit there is none
+  const double infinite = std::numeric_limits<double>::infinity();
+  CHECK(independent_difference(estimate(x), {1.0, {0.0, infinite}, 2.0}).interval.high == infinite);
 }
 
 TEST_CASE("a difference the other way round is its negative", "[analysis][proportion]") {

@@ -1,9 +1,14 @@
 // Tests of ratings and ranks, against R's friedman.test, wilcox.test, p.adjust and quantile.
 #include "analysis/statistics/rank_tests.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 
+#include "analysis/statistics/distributions.hpp"
+#include "analysis/statistics/friedman_test.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
@@ -30,30 +35,98 @@ std::string r_table(const RatingTable& ratings) {
 }
 }  // namespace
 
-TEST_CASE("Friedman's test and mean ranks are R's", "[analysis][rank_tests]") {
+TEST_CASE("Friedman's statistic and mean ranks are R's", "[analysis][rank_tests]") {
   for (const RatingTable& ratings : {tied, untied}) {
     const std::vector<double> expected = testing::r_numbers(r_table(ratings) + R"(
-f <- friedman.test(m); out(f$statistic, f$parameter, f$p.value)
+f <- friedman.test(m); out(f$statistic, f$parameter)
 out(colMeans(t(apply(m, 1, rank))))
 )");
-    REQUIRE(expected.size() == 3 + 4);
-    const auto ours = analysis::friedman_test(ratings);
+    REQUIRE(expected.size() == 2 + 4);
+    const auto ours = analysis::friedman_test(ratings, 1);
     CHECK(ours.chi_squared == Approx(expected[0]).epsilon(1e-12));
     CHECK(ours.degrees_of_freedom == expected[1]);
-    CHECK(ours.p == Approx(expected[2]).epsilon(1e-10));
     for (std::size_t j = 0; j < 4; ++j) {
-      CHECK(ours.mean_ranks[j] == Approx(expected[3 + j]).epsilon(1e-12));
+      CHECK(ours.mean_ranks[j] == Approx(expected[2 + j]).epsilon(1e-12));
     }
   }
 }
 
+namespace {
+// Of all orders of all participants' ranks, one by one.
+double share_of_orders(const RatingTable& ratings) {
+  const double observed = analysis::friedman_test(ratings, 1).chi_squared;
+  int orders = 0;
+  int as_large = 0;
+  const std::function<void(RatingTable&, std::size_t)> visit = [&](RatingTable& table,
+                                                                   std::size_t person) {
+    if (person == table.size()) {
+      ++orders;
+      as_large += analysis::friedman_test(table, 1).chi_squared >= observed - 1e-9 ? 1 : 0;
+      return;
+    }
+    const std::vector<double> own = table[person];
+    std::vector<std::size_t> places(own.size());
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    do {
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        table[person][i] = own[places[i]];
+      }
+      visit(table, person + 1);
+    } while (std::ranges::next_permutation(places).found);
+    table[person] = own;
+  };
+  RatingTable table = ratings;
+  visit(table, 0);
+  return static_cast<double>(as_large) / orders;
+}
+}  // namespace
+
+TEST_CASE("Friedman's p is the share of orders of ranks that differ as much, ties as they are",
+          "[analysis][rank_tests]") {
+  const std::vector<RatingTable> tables{{{1, 2, 3}, {1, 3, 2}, {2, 1, 3}},
+                                        {{1, 1, 3}, {1, 3, 2}, {2, 2, 2}, {1, 2, 2}},
+                                        {{1, 2, 3, 4}, {2, 2, 3, 4}, {1, 4, 3, 3}}};
+  for (const RatingTable& table : tables) {
+    const auto ours = analysis::friedman_test(table, 1);
+    CHECK(ours.is_exact);
+    CHECK(ours.p == Approx(share_of_orders(table)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("Friedman's p is that of the published tables of its exact distribution",
+          "[analysis][rank_tests]") {
+  // Friedman 1937, tables V and VI: probability of a statistic at least as large
+  const auto p_of = [](const RatingTable& table) { return analysis::friedman_test(table, 1).p; };
+  const std::vector<double> up{1, 2, 3};
+  CHECK(p_of({up, up, up}) == Approx(0.028).margin(5e-4));                  // 6.000
+  CHECK(p_of({up, up, {1, 3, 2}}) == Approx(0.194).margin(5e-4));           // 4.667
+  CHECK(p_of({up, up, up, {1, 3, 2}}) == Approx(0.042).margin(5e-4));       // 6.500
+  CHECK(p_of({{1, 2, 3, 4}, {1, 2, 3, 4}}) == Approx(0.042).margin(5e-4));  // 6.000
+}
+
+TEST_CASE("where orders are too many Friedman's p is of random ones, and chi-squared's in the end",
+          "[analysis][rank_tests]") {
+  core::Rng rng{4};
+  RatingTable table;
+  for (int person = 0; person < 60; ++person) {
+    table.emplace_back();
+    for (int condition = 0; condition < 8; ++condition) {
+      table.back().push_back(rng.normal() + 0.05 * condition);
+    }
+  }
+  const auto ours = analysis::friedman_test(table, 1);
+  CHECK_FALSE(ours.is_exact);
+  const double limit = analysis::chi_squared_p(ours.chi_squared, ours.degrees_of_freedom);
+  CHECK(ours.p == Approx(limit).margin(4.0 * std::sqrt(limit * (1.0 - limit) / 9999.0) + 0.005));
+}
+
 TEST_CASE("Kendall's W is 1 of judges who agree and the squared deviations of rank sums else",
           "[analysis][rank_tests]") {
-  CHECK(analysis::friedman_test({{1, 2, 3}, {4, 6, 9}, {1, 5, 8}}).kendalls_w ==
+  CHECK(analysis::friedman_test({{1, 2, 3}, {4, 6, 9}, {1, 5, 8}}, 1).kendalls_w ==
         Approx(1.0).epsilon(1e-12));
-  CHECK(analysis::friedman_test({{1, 2, 3}, {3, 2, 1}}).kendalls_w == Approx(0.0).margin(1e-12));
+  CHECK(analysis::friedman_test({{1, 2, 3}, {3, 2, 1}}, 1).kendalls_w == Approx(0.0).margin(1e-12));
   // W = 12 S / (m^2 (n^3 - n)), Kendall & Babington Smith 1939: rank sums 4, 6, 8 of 3 judges
-  CHECK(analysis::friedman_test({{1, 2, 3}, {1, 3, 2}, {2, 1, 3}}).kendalls_w ==
+  CHECK(analysis::friedman_test({{1, 2, 3}, {1, 3, 2}, {2, 1, 3}}, 1).kendalls_w ==
         Approx(12.0 * 8.0 / (9.0 * 24.0)).epsilon(1e-12));
 }
 
@@ -137,12 +210,12 @@ TEST_CASE("marks a hundredth apart are tied as their hundredths are, though not 
 }
 
 TEST_CASE("ratings that cannot be compared are refused", "[analysis][rank_tests]") {
-  CHECK_THROWS_AS(analysis::friedman_test({}), core::InvalidInput);
-  CHECK_THROWS_AS(analysis::friedman_test({{1, 2}}), core::InvalidInput);
-  CHECK_THROWS_AS(analysis::friedman_test({{1}, {2}}), core::InvalidInput);
-  CHECK_THROWS_AS(analysis::friedman_test({{1, 2}, {2}}), core::InvalidInput);
-  CHECK_THROWS_AS(analysis::friedman_test({{1, 2}, {2, std::nan("")}}), core::InvalidInput);
-  CHECK_THROWS_WITH(analysis::friedman_test({{1, 1}, {2, 2}}), Contains("the same"));
+  CHECK_THROWS_AS(analysis::friedman_test({}, 1), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::friedman_test({{1, 2}}, 1), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::friedman_test({{1}, {2}}, 1), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::friedman_test({{1, 2}, {2}}, 1), core::InvalidInput);
+  CHECK_THROWS_AS(analysis::friedman_test({{1, 2}, {2, std::nan("")}}, 1), core::InvalidInput);
+  CHECK_THROWS_WITH(analysis::friedman_test({{1, 1}, {2, 2}}, 1), Contains("the same"));
   CHECK_THROWS_AS(analysis::signed_rank_test({}), core::InvalidInput);
   CHECK_THROWS_AS(analysis::signed_rank_test({1.0, std::numeric_limits<double>::infinity()}),
                   core::InvalidInput);

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/statistics/friedman_test.hpp"
 #include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/proportion.hpp"
-#include "analysis/statistics/rank_tests.hpp"
 #include "inference/people.hpp"
 #include "inference/rows.hpp"
 namespace tapstudy::bench {
@@ -126,13 +126,13 @@ std::vector<Row> rows_of_choices() {
       {coverage, "choice", "three shares at once (Goodman)", By::people, shares_at_once},
       {size, "ranking", "Friedman", By::people,
        [](const StudyDraw& draw) {
-         return std::optional{Outcome{analysis::friedman_test(places_of(draw)).p}};
+         return std::optional{Outcome{analysis::friedman_test(places_of(draw), 1).p}};
        }},
       {size, "ranking", "any pair, after Holm", By::people,
        [](const StudyDraw& draw) { return any_pair(places_of(draw)); }},
       {size, "rating", "Friedman", By::people,
        [](const StudyDraw& draw) {
-         return std::optional{Outcome{analysis::friedman_test(ratings_of(draw, 0.0)).p}};
+         return std::optional{Outcome{analysis::friedman_test(ratings_of(draw, 0.0), 1).p}};
        }},
       {size, "rating", "any pair, after Holm", By::people,
        [](const StudyDraw& draw) { return any_pair(ratings_of(draw, 0.0)); }},

@@ -35,7 +35,7 @@ Row coverage_of_share(double mean, Trials trials, const char* words) {
 std::optional<Outcome> difference_of_studies(const StudyDraw& draw) {
   const auto estimate = [&](double mean) {
     const auto of = analysis::mean_share(sample_of(mean, Trials::equal, draw));
-    return analysis::IntervalEstimate{of->mean, of->interval.value()};
+    return analysis::IntervalEstimate{of->mean, of->interval.value(), of->participants - 1.0};
   };
   const auto first = estimate(0.6);
   return holds(analysis::independent_difference(first, estimate(0.8)).interval, 0.2);

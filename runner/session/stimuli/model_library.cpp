@@ -121,7 +121,7 @@ ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
   }
   Progress progress{fmt::format("building the model of '{}'", stimulus.name)};
   body = std::make_shared<const core::BodyModes>(
-      core::solve_body(spec, progress.hook(), core::ErrorEstimation::wanted).modes);
+      core::solve_body(spec, progress.hook(), estimation_).modes);
   ++solved_;
   if (!cache_.store(key, *body)) {
     warn(fmt::format("{}: models cannot be cached here and will be rebuilt", cache_.directory()));

@@ -64,7 +64,10 @@ class ModelLibrary {
  public:
   using Plate = std::shared_ptr<const core::VibratingPlate>;
   using Body = std::shared_ptr<const core::BodyModes>;
-  explicit ModelLibrary(core::ModelCache cache = user_model_cache()) : cache_{std::move(cache)} {}
+  // What is kept in a cache holds an estimate: without one only where the cache has no place.
+  explicit ModelLibrary(core::ModelCache cache = user_model_cache(),
+                        core::ErrorEstimation estimation = core::ErrorEstimation::wanted)
+      : cache_{std::move(cache)}, estimation_{estimation} {}
 
   // Throws InvalidInput or ModelError, naming the stimulus and its values. After build_all neither
   // meshes nor solves. Only plates of stimuli at their own values are kept: of a family as many may
@@ -88,6 +91,7 @@ class ModelLibrary {
 
   std::mutex mutex_;
   core::ModelCache cache_;
+  core::ErrorEstimation estimation_;
   std::map<std::string, Body> bodies_;  // by content key
   std::map<std::string, Plate> plates_;
   int solved_{0};

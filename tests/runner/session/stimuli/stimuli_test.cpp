@@ -28,7 +28,7 @@ struct Presented {
 };
 
 Presented presented(const protocols::Protocol& protocol, const AxisValues& asked) {
-  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  runner::ModelLibrary models{core::ModelCache{"", ""}, core::ErrorEstimation::none};
   models.build_all(protocol);
   const int solved = models.bodies_solved();
   Presented seen{stimulus_at(protocol, protocol.stimuli.front(), asked), {}, {}};
@@ -232,7 +232,7 @@ TEST_CASE("a member that cannot be built is named with its values before the ses
     for (const auto& [from, to] : edits) {
       text = testing::replaced(text, from, to);
     }
-    runner::ModelLibrary models{core::ModelCache{"", ""}};
+    runner::ModelLibrary models{core::ModelCache{"", ""}, core::ErrorEstimation::none};
     const auto protocol = protocols::parse_protocol(text, "study.yaml");
     CHECK_THROWS_AS(models.build_all(protocol), core::ModelError);
     CHECK_THROWS_WITH(models.build_all(protocol), Contains("study.yaml:") && Contains(what) &&
@@ -258,7 +258,7 @@ TEST_CASE("stimuli that share a plate share the body of their softest member",
       testing::varied_study_text_with({"youngs_modulus_pa: {from: 1e9, to: 5e9}"}) +
       "  b: {plate: screwed, material: acrylic, technique: fem}\n";
   const auto protocol = protocols::parse_protocol(text, "study.yaml");
-  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  runner::ModelLibrary models{core::ModelCache{"", ""}, core::ErrorEstimation::none};
   models.build_all(protocol);
   CHECK(models.bodies_solved() == 1);
 }
@@ -271,7 +271,7 @@ TEST_CASE("a mode crosses the band limit where its frequency, as the root of E, 
   const auto range = std::ranges::find(stimulus.vary, std::string_view{"youngs_modulus_pa"},
                                        [](const auto& axis) { return axis.axis->name; });
   REQUIRE(range != stimulus.vary.end());
-  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  runner::ModelLibrary models{core::ModelCache{"", ""}, core::ErrorEstimation::none};
   models.build_all(protocol);
   const auto softest = stimulus_at(protocol, stimulus, {{"youngs_modulus_pa", range->from}});
   std::vector<double> crossings_pa;
@@ -305,7 +305,7 @@ TEST_CASE("none and sinusoid build no mesh", "[runner][stimuli]") {
     for (protocols::Stimulus& stimulus : protocol.stimuli) {
       stimulus.technique = core::find_technique(technique);
     }
-    runner::ModelLibrary models{core::ModelCache{"", ""}};
+    runner::ModelLibrary models{core::ModelCache{"", ""}, core::ErrorEstimation::none};
     models.build_all(protocol);
     runner::build_trial_stimuli(protocol, {protocol.stimuli.front().name}, models);
     CHECK(models.bodies_solved() == 0);
@@ -320,7 +320,7 @@ TEST_CASE("materials of one Poisson's ratio share one solution", "[runner][stimu
     material.poissons_ratio = 0.3;
     stimulus.material = std::make_shared<const protocols::Material>(material);
   }
-  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  runner::ModelLibrary models{core::ModelCache{"", ""}, core::ErrorEstimation::none};
   models.build_all(protocol);
   CHECK(models.bodies_solved() == 2);  // four stimuli, two plates
 }
@@ -343,7 +343,7 @@ TEST_CASE("on springs each Young's modulus has a solution of its own, and each d
     protocol.stimuli.at(i).material = std::make_shared<const protocols::Material>(material);
     protocol.stimuli.at(i).plate = plate;
   }
-  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  runner::ModelLibrary models{core::ModelCache{"", ""}, core::ErrorEstimation::none};
   models.build_all(protocol);
   CHECK(models.bodies_solved() == 2);
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
@@ -364,7 +364,7 @@ TEST_CASE("what damps is of a stimulus's own: materials and contacts", "[runner]
     spring.loss_factor = 0.0;
   }
   stiff.contacts = std::make_shared<const protocols::Contacts>(contacts);
-  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  runner::ModelLibrary models{core::ModelCache{"", ""}, core::ErrorEstimation::none};
   const auto ratios = [&](const protocols::Stimulus& stimulus) {
     return models.plate_of(protocol, protocols::stimulus_with(protocol, stimulus))
         ->model.damping_ratio;
@@ -391,7 +391,7 @@ TEST_CASE("a body that does not vibrate in the band is refused, with its first f
       testing::replaced(testing::contents(testing::shipped("paper/discrimination.yaml")),
                         "band_limit_hz: 300", "band_limit_hz: 20"),
       "study.yaml");
-  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  runner::ModelLibrary models{core::ModelCache{"", ""}, core::ErrorEstimation::none};
   CHECK_THROWS_WITH(
       models.build_all(protocol),
       Contains("no mode lies below band_limit_hz (20 Hz)") && Contains("its first is at "));

@@ -216,7 +216,7 @@ SolvedBody refine(BodySpec body, const ProgressHook& progress) {
          (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
     size.max_tet_volume_m3 = volume_m3;
     SolvedBody solved = solve_once(body, size, ErrorEstimation::wanted, progress);
-    body.mesh.order = solved.modes.report.order;  // rounds of one order, so that they compare
+    body.mesh.order = solved.modes.report.order();  // rounds of one order, so that they compare
     const Eigen::ArrayXd after = tracked_frequencies(body, size, solved);
     dofs = solved.modes.report.dofs;
     add(solved.modes.report.cost, cost);

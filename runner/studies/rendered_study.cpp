@@ -155,6 +155,18 @@ std::optional<double> largest_error(const core::FrequencyErrors& errors) {
   return errors.relative.size() > 0 ? std::optional{errors.largest()} : std::nullopt;
 }
 
+std::string relaxed_ratio(const core::ModelReport& report) {
+  std::vector<std::string> relaxed;
+  for (std::size_t i = 0; i < report.bodies.size(); ++i) {
+    const core::RadiusEdgeRatio& ratio = report.bodies[i].radius_edge_ratio;
+    if (ratio.is_relaxed()) {
+      relaxed.push_back(fmt::format("{} instead of {}{}", ratio.used, ratio.asked,
+                                    i == 0 ? "" : fmt::format(" (body {} that it touches)", i)));
+    }
+  }
+  return fmt::format("{}", fmt::join(relaxed, ", "));
+}
+
 std::optional<RenderedModel> model_of(const Protocol& protocol, const Stimulus& stimulus,
                                       const core::ModelCache& cache) {
   if (!stimulus.technique->needs_model()) {
@@ -166,7 +178,8 @@ std::optional<RenderedModel> model_of(const Protocol& protocol, const Stimulus& 
   }
   return RenderedModel{listed(found->modal.frequency_hz),
                        listed(found->modal.damping_ratio),
-                       found->report.order,
+                       found->report.order(),
+                       relaxed_ratio(found->report),
                        found->report.nodes,
                        found->report.tets,
                        found->report.worst_residual,

@@ -259,6 +259,14 @@ void say_what_is_missing(const RenderedStudy& study, ReportSection& section) {
         "Where modes are left out, no model of this version of the program is cached on this "
         "machine: `tapstudy check` of the protocol makes one.");
   }
+  for (const RenderedStimulus& stimulus : study.stimuli) {
+    if (stimulus.model && !stimulus.model->relaxed_radius_edge_ratio.empty()) {
+      section.remarks.push_back(fmt::format(
+          "The mesh of {} has a radius-edge ratio of {}, as that would have taken too many "
+          "tetrahedra.",
+          stimulus.label, stimulus.model->relaxed_radius_edge_ratio));
+    }
+  }
   if (std::ranges::any_of(study.stimuli, &RenderedStimulus::varies)) {
     section.remarks.emplace_back(
         "Of stimuli that vary, models are those of their own values, and taps those at all "

@@ -130,10 +130,11 @@ std::string describe_joints(const protocols::Protocol& protocol,
   }
   std::vector<std::string> bodies;
   for (std::size_t i = 0; i < stimulus.contacts->bodies.size(); ++i) {
+    const core::Material& material = stimulus.contacts->bodies[i].material;
     bodies.push_back(fmt::format("{} of {:.3g} Pa, {:.4g} kg/m³",
                                  name_in(protocol.plates, stimulus.contacts->plates.at(i + 1)),
-                                 stimulus.contacts->bodies[i].material.youngs_modulus_pa,
-                                 stimulus.contacts->bodies[i].material.density_kg_per_m3));
+                                 fmt::join(youngs_moduli_pa(material), ", "),
+                                 material.density_kg_per_m3));
   }
   const std::size_t springs = stimulus.contacts->springs.size();
   return fmt::format("; touches {} by {} spring{}", fmt::join(bodies, ", "), springs,
@@ -193,7 +194,7 @@ RenderedStimulus describe_stimulus(const Protocol& protocol, const Stimulus& sti
           name_in(protocol.plates, stimulus.plate),
           describe_size(stimulus.plate->shape),
           name_in(protocol.materials, stimulus.material),
-          stimulus.material->youngs_modulus_pa,
+          youngs_moduli_pa(*stimulus.material),
           stimulus.material->density_kg_per_m3,
           describe_fixations(stimulus.plate->fixations) + describe_joints(protocol, stimulus),
           std::string{stimulus.technique->name},

@@ -43,7 +43,7 @@ struct RenderedStimulus {
   std::string plate;
   std::string size;
   std::string material;
-  double youngs_modulus_pa{};
+  std::vector<double> youngs_moduli_pa;  // of an orthotropic material along its axes; at least one
   double density_kg_per_m3{};
   std::string fixation;
   std::string technique;

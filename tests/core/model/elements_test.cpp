@@ -36,7 +36,8 @@ Element element(int order) {
   Nodes nodes{order == 1 ? 4 : 10, 3};
   nodes.topRows<4>() = c;
   if (order == 1) {
-    const auto tet = core::tet_element<4>(c, testing::mdf());
+    const auto tet = core::tet_element<4>(c, core::ElasticStiffness{testing::mdf()},
+                                          testing::mdf().density_kg_per_m3);
     return {nodes, tet.stiffness, tet.mass};
   }
   const std::vector<std::pair<int, int>> edges{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
@@ -44,7 +45,8 @@ Element element(int order) {
     nodes.row(static_cast<Eigen::Index>(4 + e)) =
         0.5 * (c.row(edges[e].first) + c.row(edges[e].second));
   }
-  const auto tet = core::tet_element<10>(c, testing::mdf());
+  const auto tet = core::tet_element<10>(c, core::ElasticStiffness{testing::mdf()},
+                                         testing::mdf().density_kg_per_m3);
   return {nodes, tet.stiffness, tet.mass};
 }
 // Displacements u = G x of the nodes.

@@ -245,6 +245,31 @@ TEST_CASE("springs lower every frequency below that of the constraint that they 
   CHECK(before_hz == Approx(held_hz[0]).epsilon(1e-3));
 }
 
+// Regions that cut through triangles, and hold nodes inside the body and single ones.
+TEST_CASE("springs without bound become the rigid fixation of the same region, on any mesh",
+          "[core][model]") {
+  const int order = GENERATE(1, 2);
+  const core::RegionShape shape = GENERATE(core::RegionShape::disc, core::RegionShape::ball);
+  CAPTURE(order, static_cast<int>(shape));
+  core::Fixation foot;
+  foot.shape = shape;
+  foot.at_m = {0.04, 0.03, shape == core::RegionShape::ball ? -0.05 : 0.0};
+  foot.radius_m = 0.047;
+  foot.face = core::Face::through;
+  core::PlateSpec spec = block(order, 2e-5);
+  spec.material = testing::mdf();
+  spec.band_limit_hz = 1500.0;
+  spec.fixations = {foot};
+  const Eigen::ArrayXd held_hz = core::build_plate_model(spec).modal.frequency_hz;
+  REQUIRE(held_hz.size() >= 2);
+  for (const auto& [k, close] : {std::pair{1e14, 1e-3}, {1e16, 1e-5}}) {
+    spec.fixations.front().springs_n_per_m = core::Vec3{k, k, k};
+    const Eigen::ArrayXd sprung_hz = core::build_plate_model(spec).modal.frequency_hz;
+    REQUIRE(sprung_hz.size() == held_hz.size());
+    CHECK((sprung_hz / held_hz - 1.0).abs().maxCoeff() < close);
+  }
+}
+
 TEST_CASE("a support smaller than the elements shares its spring out over its nodes",
           "[core][model]") {
   core::PlateSpec plate = testing::paper_plate(4, testing::mdf());

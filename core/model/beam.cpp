@@ -136,6 +136,9 @@ BodyModes beam_modes(const BodySpec& body) {
   if (!beam) {
     throw ModelError{fmt::format("a beam is {}", beam_requirements)};
   }
+  if (body.orthotropy) {
+    throw ModelError{beams_are_isotropic};
+  }
   const double radius_of_gyration_m = beam->thickness_m / std::sqrt(12.0);
   std::vector<double> roots;
   std::vector<double> kappas;

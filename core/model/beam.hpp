@@ -25,8 +25,12 @@ inline constexpr const char* beam_requirements =
     "z by constraints, at least ten times as long from there as thick and three "
     "times as wide";
 
+// Turned axes couple bending with torsion, which the closed form lacks.
+inline constexpr const char* beams_are_isotropic =
+    "a beam in closed form is isotropic (its material has youngs_moduli_pa; use fem)";
+
 // The modes below the band limit in closed form: w_n = (b_n)^2 sqrt(E I / (rho A)), with cos b L
 // cosh b L = -1 for one held end and +1 for two (Blevins 1979, table 8-1). Along z only.
-// Throws ModelError if it is no beam, or has more modes than anybody can feel.
+// Throws ModelError if it is no beam, is orthotropic, or has more modes than anybody can feel.
 BodyModes beam_modes(const BodySpec& body);
 }  // namespace tapstudy::core

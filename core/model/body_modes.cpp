@@ -81,7 +81,7 @@ void add(const ModelCost& more, ModelCost& to) {
 
 SolvedBody solve_once(const BodySpec& body, const MeshSize& size, ErrorEstimation estimation,
                       const ProgressHook& progress) {
-  const Material unit{1.0, 1.0, body.poissons_ratio, {}};
+  const Material unit = body.unit_material();
   std::vector<DiscreteBody> discrete{discretised(body, unit, size, {}, progress)};
   DiscreteBody& only = discrete.front();
   const double turn = 2.0 * std::numbers::pi;
@@ -216,7 +216,7 @@ SolvedBody refine(BodySpec body, const ProgressHook& progress) {
          (rounds.empty() || rounds.back().tets <= finer * max_tets)) {
     size.max_tet_volume_m3 = volume_m3;
     SolvedBody solved = solve_once(body, size, ErrorEstimation::wanted, progress);
-    body.mesh.order = solved.modes.report.order;  // rounds of one order, so that they compare
+    body.mesh.order = solved.modes.report.order();  // rounds of one order, so that they compare
     const Eigen::ArrayXd after = tracked_frequencies(body, size, solved);
     dofs = solved.modes.report.dofs;
     add(solved.modes.report.cost, cost);
@@ -253,8 +253,9 @@ std::string content_key(const Plate& plate) {
 }
 
 std::string content_key(const BodySpec& body) {
-  return fmt::format("{} poisson({:a}) band({:a}) {}", content_key(static_cast<const Plate&>(body)),
-                     body.poissons_ratio, body.band_limit_rad_per_m,
+  return fmt::format("{} poisson({:a}){} band({:a}) {}",
+                     content_key(static_cast<const Plate&>(body)), body.poissons_ratio,
+                     content_key(body.orthotropy), body.band_limit_rad_per_m,
                      body.joints ? content_key(*body.joints) : "");
 }
 

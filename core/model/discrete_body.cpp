@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "core/model/element_order.hpp"
@@ -40,9 +39,8 @@ ModelReport report_on(const std::vector<DiscreteBody>& bodies, const Modes& mode
     report.nodes += static_cast<int>(body.mesh.nodes_m.rows());
     report.tets += static_cast<int>(body.mesh.tets.rows());
     report.dofs += body.dofs.count;
-    report.radius_edge_ratio = std::max(report.radius_edge_ratio, body.mesh.radius_edge_ratio);
+    report.bodies.push_back({body.mesh.order(), body.mesh.radius_edge_ratio});
   }
-  report.order = bodies.front().mesh.order();
   report.cost.factor_s = modes.factor_s;
   report.cost.iterate_s = modes.iterate_s;
   report.rigid_body_modes = modes.rigid_body_modes;

@@ -113,8 +113,8 @@ ErrorEstimate estimate_error(const BodySpec& plate, const CoupledBodies& system,
     dofs += enriched_dofs(body.mesh, body.dofs);
   }
   const auto build = [&] {
-    const Material unit{1.0, 1.0, plate.poissons_ratio, {}};
-    std::vector<EnrichedBody> bodies{enriched_body(plate, unit, system.bodies.front())};
+    std::vector<EnrichedBody> bodies{
+        enriched_body(plate, plate.unit_material(), system.bodies.front())};
     for (std::size_t i = 1; i < system.bodies.size(); ++i) {
       const JoinedBody& other = plate.joints->bodies[i - 1];
       bodies.push_back(enriched_body(other, other.material, system.bodies[i]));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/model/elements/material.hpp"
+#include "core/model/mesh/tet_mesh.hpp"
 namespace tapstudy::core {
 // All that a tick needs of a plate: modes inside the band and the part of their shapes that can be
 // touched. Put into modal coordinates, x = P q (paper eq. 9, 10), the plate's equation of motion is
@@ -41,17 +42,23 @@ struct RefinementRound {
   double moved{};  // largest relative change of a frequency since the previous round
 };
 
+// As what a body was meshed.
+struct MeshedBody {
+  int order{};  // of its elements
+  RadiusEdgeRatio radius_edge_ratio{};
+};
+
 // Statistics of building a model, for display and verification.
 struct ModelReport {
-  int order{};
+  std::vector<MeshedBody> bodies;  // the one that is tapped, then those it touches; of a beam none
   int nodes{};
   int tets{};
   int dofs{};  // free degrees of freedom
   int rigid_body_modes{};
   int counted_in_band{};
   double worst_residual{};
-  double radius_edge_ratio{};               // the largest that a mesh was given (TetMesh)
   ModelCost cost;                           // of all rounds
   std::vector<RefinementRound> refinement;  // empty unless an accuracy was asked for
+  int order() const { return bodies.empty() ? 0 : bodies.front().order; }
 };
 }  // namespace tapstudy::core

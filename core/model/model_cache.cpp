@@ -84,14 +84,12 @@ class Reader {
 // Visits the fields of a report, for both reading and writing.
 template <class Report, class Visit>
 void each_number(Report& report, const Visit& visit) {
-  visit(report.order);
   visit(report.nodes);
   visit(report.tets);
   visit(report.dofs);
   visit(report.rigid_body_modes);
   visit(report.counted_in_band);
   visit(report.worst_residual);
-  visit(report.radius_edge_ratio);
   visit(report.cost.mesh_s);
   visit(report.cost.assemble_s);
   visit(report.cost.factor_s);
@@ -109,6 +107,12 @@ std::string encoded(const BodyModes& modes) {
   writer.put_all(modes.kinetic_share);
   writer.put_all(modes.strain_share);
   each_number(modes.report, [&](const auto& number) { writer.put(number); });
+  writer.put(static_cast<std::int64_t>(modes.report.bodies.size()));
+  for (const MeshedBody& body : modes.report.bodies) {
+    writer.put(body.order);
+    writer.put(body.radius_edge_ratio.asked);
+    writer.put(body.radius_edge_ratio.used);
+  }
   writer.put(static_cast<std::int64_t>(modes.report.refinement.size()));
   for (const RefinementRound& round : modes.report.refinement) {
     writer.put(round.tets);
@@ -136,6 +140,14 @@ std::optional<BodyModes> decoded(const std::string& bytes) {
   reader.get_all(modes.strain_share);
   modes.kappa_rad_per_m = kappa;
   each_number(modes.report, [&](auto& number) { reader.get(number); });
+  std::int64_t bodies = 0;
+  reader.get(bodies);
+  while (reader.is_good() && bodies-- > 0) {
+    MeshedBody& body = modes.report.bodies.emplace_back();
+    reader.get(body.order);
+    reader.get(body.radius_edge_ratio.asked);
+    reader.get(body.radius_edge_ratio.used);
+  }
   std::int64_t rounds = 0;
   reader.get(rounds);
   while (reader.is_good() && rounds-- > 0) {

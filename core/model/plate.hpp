@@ -41,12 +41,15 @@ struct PlateSpec : Plate {
 
 // A body of any shape, independent of Young's modulus E and density rho. Stiffness, mass and
 // spectrum scale exactly with them, so one solution for E = 1 Pa, rho = 1 kg/m³ serves every
-// material with the same Poisson's ratio: omega = kappa sqrt(E / rho), with kappa in rad/m, and
-// mode shapes are divided by sqrt(rho). A body on springs serves one Young's modulus only: its
-// springs are in N/m per Pa of it. A body in contact with others serves one density only, too.
+// material with the same Poisson's ratio or orthotropy: omega = kappa sqrt(E / rho), with kappa in
+// rad/m, and mode shapes are divided by sqrt(rho). A body on springs serves one Young's modulus
+// only: its springs are in N/m per Pa of it. A body in contact with others serves one density only,
+// too.
 struct BodySpec : Plate {
   double poissons_ratio{};
   double band_limit_rad_per_m{};           // of kappa; > 0
   std::shared_ptr<const Joints> joints{};  // relative to this body's material
+  std::optional<Orthotropy> orthotropy{};  // as Material's
+  Material unit_material() const { return {1.0, 1.0, poissons_ratio, {}, orthotropy}; }
 };
 }  // namespace tapstudy::core

@@ -67,7 +67,8 @@ BodySpec body_of(const PlateSpec& plate) {
         *plate.joints, plate.material.youngs_modulus_pa, plate.material.density_kg_per_m3));
   }
   return {std::move(of_unit_material), plate.material.poissons_ratio,
-          kappa_rad_per_m(plate.band_limit_hz, plate.material), std::move(joints)};
+          kappa_rad_per_m(plate.band_limit_hz, plate.material), std::move(joints),
+          plate.material.orthotropy};
 }
 
 ModalModel model_of(const BodyModes& body, const PlateSpec& plate) {

@@ -1,7 +1,7 @@
 #pragma once
 #include "core/model/body_modes.hpp"
 namespace tapstudy::core {
-// kappa of a frequency in a material: 2 pi f / sqrt(E / rho).
+// kappa of a frequency in a material: 2 pi f / sqrt(E / rho), of an orthotropic one with E_1.
 double kappa_rad_per_m(double frequency_hz, const Material& material);
 
 // The unit-material body from which a plate's model is scaled, solved up to its band limit; of a

@@ -10,6 +10,7 @@ namespace tapstudy::protocols::allowed {
 inline constexpr Range youngs_modulus_pa{1e3, 1e13};  // 1 kPa is softer than any foam
 inline constexpr Range density_kg_per_m3{0.0, 1e5, false};
 inline constexpr Range poissons_ratio{-1.0, 0.5, false, false};
+inline constexpr Range poissons_ratios{-1e3, 1e3};  // sqrt(E_i / E_j) bounds them
 inline constexpr Range alpha_per_s{0.0, 1e6};
 inline constexpr Range beta_s{0.0, 1e3};
 inline constexpr Range damping_ratio{0.0, 100.0};
@@ -49,6 +50,7 @@ struct Axis {
   void (*set)(PresentedStimulus& stimulus, double value){};
   bool is_without_contacts{false};  // plates that touch other bodies do not scale so
   bool is_of_rendering{false};  // no property of plate or material: a stimulus may state its own
+  bool is_of_isotropic{false};  // orthotropic materials have no such property
 };
 
 const std::vector<Axis>& axes();

@@ -145,8 +145,11 @@ bool has_sinusoid(const core::Technique& technique) {
 using P = PresentedStimulus;
 constexpr std::array table{
     Axis{"youngs_modulus_pa", "Young's modulus", "Pa",
-         "Young's modulus; for techniques with the plate's vibration", AxisKind::scaled, vibrates,
-         false, true, constant<allowed::youngs_modulus_pa>, allowed::youngs_modulus_pa,
+         "Young's modulus, of an orthotropic material along its first axis, the others and the "
+         "shear "
+         "moduli in proportion; for techniques with the plate's vibration",
+         AxisKind::scaled, vibrates, false, true, constant<allowed::youngs_modulus_pa>,
+         allowed::youngs_modulus_pa,
          [](const P& stimulus) { return stimulus.material->youngs_modulus_pa; },
          [](P& stimulus, double value) {
            change_material(stimulus, [&](Material& m) { m.youngs_modulus_pa = value; });
@@ -216,7 +219,8 @@ constexpr std::array table{
          [](const P& stimulus) { return stimulus.material->poissons_ratio; },
          [](P& stimulus, double value) {
            change_material(stimulus, [&](Material& m) { m.poissons_ratio = value; });
-         }},
+         },
+         false, false, true},
     Axis{
         "thickness_m", "thickness", "m",
         "thickness of a box, a model for each value; fixations stay where they are; for techniques "
@@ -267,6 +271,9 @@ std::string refusal(const Axis& axis, const PresentedStimulus& stimulus) {
   }
   if (axis.is_of_boxes && !std::holds_alternative<core::Box>(stimulus.plate->shape)) {
     return "only a plate given by size_m has it, not one with a surface from a file";
+  }
+  if (axis.is_of_isotropic && stimulus.material->orthotropy) {
+    return "an orthotropic material has three of them (name stimuli of several materials instead)";
   }
   if (axis.is_without_springs && core::is_on_springs(stimulus.plate->fixations)) {
     return "a plate on springs does not scale with it (name stimuli of several materials instead)";

@@ -231,6 +231,9 @@ void check_technique(MapReader& reader, const Stimulus& stimulus, const Protocol
     reader.reject("technique",
                   fmt::format("'{}' is for {}", stimulus.technique->name, core::beam_requirements));
   }
+  if (stimulus.technique->needs_beam() && stimulus.material && stimulus.material->orthotropy) {
+    reader.reject("technique", core::beams_are_isotropic);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "protocols/axes/axis.hpp"
@@ -61,10 +62,9 @@ core::Damping read_damping(MapReader& damping) {
                      allowed::beta_s)};
 }
 
-core::Material read_material(MapReader& reader) {
-  core::Material material;
+void read_isotropic(MapReader& reader, core::Material& material) {
   material.youngs_modulus_pa =
-      reader.number({"youngs_modulus_pa", "Young's modulus"},
+      reader.number({"youngs_modulus_pa", "Young's modulus of an isotropic material"},
                     reader.narrowed(allowed::youngs_modulus_pa,
                                     Range::positive(allowed::youngs_modulus_pa.high)));
   constexpr double softest_pa = allowed::youngs_modulus_pa.low;
@@ -73,10 +73,68 @@ core::Material read_material(MapReader& reader) {
                   fmt::format("{} Pa is softer than any solid (did you mean {}e9?)",
                               material.youngs_modulus_pa, material.youngs_modulus_pa));
   }
+  material.poissons_ratio = reader.number(
+      {"poissons_ratio", "Poisson's ratio of an isotropic material"}, allowed::poissons_ratio);
+}
+
+std::array<double, 3> three_numbers(MapReader& reader, const Key& key, const Range& range) {
+  const Eigen::Vector3d numbers = reader.numbers(key, 3, range);
+  return {numbers.x(), numbers.y(), numbers.z()};
+}
+
+void read_orthotropic(MapReader& reader, core::Material& material) {
+  const std::size_t earlier_problems = reader.problems_in_file();
+  for (const char* const key : {"youngs_modulus_pa", "poissons_ratio"}) {
+    reader.refuse(key, "not beside youngs_moduli_pa, of an orthotropic material");
+  }
+  core::Orthotropy elasticity;
+  elasticity.moduli = three_numbers(reader,
+                                    {"youngs_moduli_pa",
+                                     "of an orthotropic material, such as wood: Young's moduli "
+                                     "along its axes 1, 2 and 3; unset: isotropic"},
+                                    allowed::youngs_modulus_pa);
+  elasticity.poissons_ratios =
+      three_numbers(reader,
+                    {"poissons_ratios",
+                     "beside youngs_moduli_pa: 12, 13 and 23, ij being the contraction along j "
+                     "over the extension along i under a load along i"},
+                    allowed::poissons_ratios);
+  elasticity.shear_moduli = three_numbers(
+      reader, {"shear_moduli_pa", "beside youngs_moduli_pa: of the planes 12, 13 and 23"},
+      allowed::youngs_modulus_pa);
+  if (reader.has("axes_rotation_rad")) {
+    elasticity.rotation_rad =
+        three_numbers(reader,
+                      {"axes_rotation_rad",
+                       "beside youngs_moduli_pa: the material's axes are the plate frame's x, y "
+                       "and z, turned about the direction of this vector by its length; unset: "
+                       "not turned"},
+                      {-6.3, 6.3});
+  }
+  if (reader.problems_in_file() > earlier_problems) {
+    return;
+  }
+  material.youngs_modulus_pa = elasticity.moduli[0];
+  for (std::array<double, 3>* const values : {&elasticity.moduli, &elasticity.shear_moduli}) {
+    for (double& value : *values) {
+      value /= material.youngs_modulus_pa;
+    }
+  }
+  if (const auto fault = core::fault_of(elasticity)) {
+    reader.reject(fault->property, fault->words);
+  }
+  material.orthotropy = elasticity;
+}
+
+core::Material read_material(MapReader& reader) {
+  core::Material material;
+  if (reader.has("youngs_moduli_pa")) {
+    read_orthotropic(reader, material);
+  } else {
+    read_isotropic(reader, material);
+  }
   material.density_kg_per_m3 =
       reader.number({"density_kg_per_m3", "density"}, allowed::density_kg_per_m3);
-  material.poissons_ratio =
-      reader.number({"poissons_ratio", "Poisson's ratio"}, allowed::poissons_ratio);
   reader.map({"damping",
               "Rayleigh coefficients; or ratios of the lowest and highest mode in the band; or "
               "measured ratios, fitted by Rayleigh damping; or one ratio per mode"},
@@ -192,11 +250,12 @@ void read_placement(MapReader& top, const Key& key, Presence presence,
 }
 
 void read_materials(MapReader& top, Protocol& protocol) {
-  top.each({"materials", "named materials: homogeneous, isotropic, linearly elastic"},
-           Presence::required, [&](const std::string& name, MapReader& reader) {
-             protocol.materials[name] = std::make_shared<const Material>(
-                 Material{read_material(reader), reader.stated_at("damping")});
-           });
+  top.each(
+      {"materials", "named materials: homogeneous, linearly elastic, isotropic or orthotropic"},
+      Presence::required, [&](const std::string& name, MapReader& reader) {
+        protocol.materials[name] = std::make_shared<const Material>(
+            Material{read_material(reader), reader.stated_at("damping")});
+      });
 }
 
 // Measured transients, by name.

@@ -162,9 +162,7 @@ Eigen::Isometry3d read_pose(MapReader& reader) {
         {"rotation_rad",
          "turns the surface about the direction of this vector by its length; unset: stays"},
         3, {-6.3, 6.3});
-    if (turn.norm() > 0.0) {
-      pose.linear() = Eigen::AngleAxisd{turn.norm(), turn.normalized()}.toRotationMatrix();
-    }
+    pose.linear() = core::rotation({turn.x(), turn.y(), turn.z()});
   }
   return pose;
 }

@@ -73,7 +73,7 @@ std::string cost_of(const core::ModelReport& report, bool is_solved_now, bool is
 std::string kind_of_model(const core::ModelReport& report, bool is_beam) {
   return is_beam ? "a beam, in closed form"
                  : fmt::format("{} {} tetrahedra, {} dof", report.tets,
-                               report.order == 2 ? "quadratic" : "linear", report.dofs);
+                               report.order() == 2 ? "quadratic" : "linear", report.dofs);
 }
 
 void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {

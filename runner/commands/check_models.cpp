@@ -247,29 +247,47 @@ std::string describe_noise(const protocols::Protocol& protocol) {
   return lines;
 }
 
+namespace {
+// Of the plate that is tapped, or of a body that it touches, from 1.
+const core::Meshing& mesh_of(const protocols::PresentedStimulus& stimulus, std::size_t body) {
+  return body == 0 ? stimulus.plate->mesh : stimulus.contacts->bodies.at(body - 1).mesh;
+}
+std::string name_of(const protocols::PresentedStimulus& stimulus, std::size_t body) {
+  return body == 0 ? stimulus.name
+                   : fmt::format("body {} that {} touches ({})", body, stimulus.name,
+                                 stimulus.contacts->plates.at(body)->stated_at);
+}
+}  // namespace
+
 std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
                              const core::ModelReport& report) {
-  if (stimulus.plate->mesh.order != core::chosen_order || report.order != 1) {
-    return {};
+  std::string lines;
+  for (std::size_t i = 0; i < report.bodies.size(); ++i) {
+    if (mesh_of(stimulus, i).order == core::chosen_order && report.bodies[i].order == 1) {
+      lines += fmt::format(
+          "  warning: {} has linear elements, as quadratic ones would have more than {} unknowns: "
+          "its frequencies may be far too high (fewer elements: a surface of fewer triangles, "
+          "mesh: radius_edge_ratio: 2 or a larger max_tet_volume_m3; or order: 2, if time and "
+          "memory allow)\n",
+          name_of(stimulus, i), core::max_chosen_dofs);
+    }
   }
-  return fmt::format(
-      "  warning: {} has linear elements, as quadratic ones would have more than {} unknowns: its "
-      "frequencies may be far too high (fewer elements: a surface of fewer triangles, mesh: "
-      "radius_edge_ratio: 2 or a larger max_tet_volume_m3; or order: 2, if time and memory "
-      "allow)\n",
-      stimulus.name, core::max_chosen_dofs);
+  return lines;
 }
 
 std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
                                const core::ModelReport& report) {
-  const double asked = stimulus.plate->mesh.size.radius_edge_ratio;
-  if (report.radius_edge_ratio <= asked) {
-    return {};
+  std::string lines;
+  for (std::size_t i = 0; i < report.bodies.size(); ++i) {
+    const core::RadiusEdgeRatio& ratio = report.bodies[i].radius_edge_ratio;
+    if (ratio.is_relaxed()) {
+      lines += fmt::format(
+          "  note: {} is meshed with radius_edge_ratio: {}, as {} would take more than {:.0g} "
+          "tetrahedra\n",
+          name_of(stimulus, i), ratio.used, ratio.asked, core::max_tets);
+    }
   }
-  return fmt::format(
-      "  note: {} is meshed with radius_edge_ratio: {}, as {} would take more than {:.0g} "
-      "tetrahedra\n",
-      stimulus.name, report.radius_edge_ratio, asked, core::max_tets);
+  return lines;
 }
 
 std::string describe_errors(const core::FrequencyErrors& errors) {

@@ -28,12 +28,12 @@ void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& m
 
 // A line for each surface file of the protocol that has something in excess of its body.
 std::string describe_noise(const protocols::Protocol& protocol);
-// Where elements are linear because quadratic ones were too many: a warning with its cure; else
-// empty.
+// A line for each body whose elements are linear because quadratic ones were too many: a warning
+// with its cure.
 std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
                              const core::ModelReport& report);
-// Where the mesher was given a larger radius-edge ratio than the protocol's: what and why; else
-// empty.
+// A line for each body whose mesher was given a larger radius-edge ratio than the protocol's: what
+// and why.
 std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
                                const core::ModelReport& report);
 // One line about the discretisation error of a model's frequencies.

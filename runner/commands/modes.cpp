@@ -84,11 +84,15 @@ void print_json(const protocols::Protocol& protocol, const protocols::PresentedS
     json["beta_s"] = plate.modal.damping->beta_s;
   }
   add_noise(protocol, json);
-  json["element_order"] = report.order;
+  json["element_order"] = report.order();
   json["nodes"] = report.nodes;
   json["elements"] = report.tets;
   json["dof"] = report.dofs;
-  json["radius_edge_ratio"] = report.radius_edge_ratio;
+  for (const core::MeshedBody& body : report.bodies) {
+    json["bodies"].push_back({{"element_order", body.order},
+                              {"radius_edge_ratio", body.radius_edge_ratio.used},
+                              {"radius_edge_ratio_asked", body.radius_edge_ratio.asked}});
+  }
   json["rigid_body_modes"] = report.rigid_body_modes;
   json["modes_in_band_by_inertia"] = report.counted_in_band;
   json["worst_residual"] = report.worst_residual;
@@ -123,7 +127,7 @@ void print_solution(const std::string& name, const core::ModelReport& report) {
       "{}: {} nodes, {} {} tetrahedra, {} free degrees of freedom\n"
       "  {:.3f} s (mesh {:.3f}, assemble {:.3f}, factor {:.3f}, iterate {:.3f}), {:.0f} MB at "
       "most\n\n",
-      name, report.nodes, report.tets, report.order == 2 ? "quadratic" : "linear", report.dofs,
+      name, report.nodes, report.tets, report.order() == 2 ? "quadratic" : "linear", report.dofs,
       report.cost.total_s(), report.cost.mesh_s, report.cost.assemble_s, report.cost.factor_s,
       report.cost.iterate_s, 1e-6 * peak_memory_bytes());
 }

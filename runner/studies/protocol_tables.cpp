@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <optional>
 #include <set>
 #include <utility>
@@ -89,6 +90,22 @@ std::string varied_axes(const Stimulus& stimulus) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
+// Empty where a material is isotropic.
+Cell describe_orthotropy(const core::Material& material) {
+  if (!material.orthotropy) {
+    return {};
+  }
+  const core::Orthotropy& elasticity = *material.orthotropy;
+  std::array<double, 3> shear_moduli_pa = elasticity.shear_moduli;
+  for (double& modulus : shear_moduli_pa) {
+    modulus *= material.youngs_modulus_pa;
+  }
+  return Cell{fmt::format(
+      "E {:.6g} Pa; nu {:.6g}; G {:.6g} Pa; turned by {:.6g} rad",
+      fmt::join(youngs_moduli_pa(material), " "), fmt::join(elasticity.poissons_ratios, " "),
+      fmt::join(shear_moduli_pa, " "), fmt::join(elasticity.rotation_rad, " "))};
+}
+
 Row row_of(const Stimulus& stimulus, const std::set<std::string>& factors) {
   const core::Vec3 size_m = core::bounds(stimulus.plate->shape).size_m();
   Row row{stimulus.name,
@@ -96,7 +113,8 @@ Row row_of(const Stimulus& stimulus, const std::set<std::string>& factors) {
           std::string{stimulus.technique->name},
           stimulus.material->youngs_modulus_pa,
           stimulus.material->density_kg_per_m3,
-          stimulus.material->poissons_ratio,
+          stimulus.material->orthotropy ? Cell{} : Cell{stimulus.material->poissons_ratio},
+          describe_orthotropy(*stimulus.material),
           size_m.x(),
           size_m.y(),
           size_m.z(),
@@ -111,8 +129,8 @@ Row row_of(const Stimulus& stimulus, const std::set<std::string>& factors) {
 
 results::Table stimuli_table(const Protocol& protocol) {
   std::vector<Column> columns = results::known_columns(
-      "stimulus label technique youngs_modulus_pa density_kg_per_m3 poissons_ratio size_x_m "
-      "size_y_m size_z_m fixations varied_axes plate material in_contact");
+      "stimulus label technique youngs_modulus_pa density_kg_per_m3 poissons_ratio orthotropy "
+      "size_x_m size_y_m size_z_m fixations varied_axes plate material in_contact");
   const std::set<std::string> factors = factors_of(protocol);
   const std::size_t own = columns.size() - 3;
   for (const std::string& factor : factors) {

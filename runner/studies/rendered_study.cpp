@@ -130,10 +130,11 @@ std::string describe_joints(const protocols::Protocol& protocol,
   }
   std::vector<std::string> bodies;
   for (std::size_t i = 0; i < stimulus.contacts->bodies.size(); ++i) {
+    const core::Material& material = stimulus.contacts->bodies[i].material;
     bodies.push_back(fmt::format("{} of {:.3g} Pa, {:.4g} kg/m³",
                                  name_in(protocol.plates, stimulus.contacts->plates.at(i + 1)),
-                                 stimulus.contacts->bodies[i].material.youngs_modulus_pa,
-                                 stimulus.contacts->bodies[i].material.density_kg_per_m3));
+                                 fmt::join(youngs_moduli_pa(material), ", "),
+                                 material.density_kg_per_m3));
   }
   const std::size_t springs = stimulus.contacts->springs.size();
   return fmt::format("; touches {} by {} spring{}", fmt::join(bodies, ", "), springs,
@@ -155,6 +156,18 @@ std::optional<double> largest_error(const core::FrequencyErrors& errors) {
   return errors.relative.size() > 0 ? std::optional{errors.largest()} : std::nullopt;
 }
 
+std::string relaxed_ratio(const core::ModelReport& report) {
+  std::vector<std::string> relaxed;
+  for (std::size_t i = 0; i < report.bodies.size(); ++i) {
+    const core::RadiusEdgeRatio& ratio = report.bodies[i].radius_edge_ratio;
+    if (ratio.is_relaxed()) {
+      relaxed.push_back(fmt::format("{} instead of {}{}", ratio.used, ratio.asked,
+                                    i == 0 ? "" : fmt::format(" (body {} that it touches)", i)));
+    }
+  }
+  return fmt::format("{}", fmt::join(relaxed, ", "));
+}
+
 std::optional<RenderedModel> model_of(const Protocol& protocol, const Stimulus& stimulus,
                                       const core::ModelCache& cache) {
   if (!stimulus.technique->needs_model()) {
@@ -166,7 +179,8 @@ std::optional<RenderedModel> model_of(const Protocol& protocol, const Stimulus& 
   }
   return RenderedModel{listed(found->modal.frequency_hz),
                        listed(found->modal.damping_ratio),
-                       found->report.order,
+                       found->report.order(),
+                       relaxed_ratio(found->report),
                        found->report.nodes,
                        found->report.tets,
                        found->report.worst_residual,
@@ -180,7 +194,7 @@ RenderedStimulus describe_stimulus(const Protocol& protocol, const Stimulus& sti
           name_in(protocol.plates, stimulus.plate),
           describe_size(stimulus.plate->shape),
           name_in(protocol.materials, stimulus.material),
-          stimulus.material->youngs_modulus_pa,
+          youngs_moduli_pa(*stimulus.material),
           stimulus.material->density_kg_per_m3,
           describe_fixations(stimulus.plate->fixations) + describe_joints(protocol, stimulus),
           std::string{stimulus.technique->name},

@@ -39,10 +39,10 @@ class CalculixInput {
       }
       text_ << '\n';
     }
-    text_ << "*MATERIAL, NAME=M" << first << "\n*ELASTIC\n"
-          << material.youngs_modulus_pa << ',' << material.poissons_ratio << "\n*DENSITY\n"
+    const std::string orientation = add_elasticity(material, first);
+    text_ << "*DENSITY\n"
           << material.density_kg_per_m3 << "\n*SOLID SECTION, ELSET=" << name << ", MATERIAL=M"
-          << first << '\n';
+          << first << orientation << '\n';
     add_constraints(plate, mesh, first);
     for (const core::SpringSupport& support :
          core::spring_supports(mesh, plate.shape, plate.fixations)) {
@@ -64,6 +64,31 @@ class CalculixInput {
   }
 
  private:
+  // Returns what the section says of the material's axes.
+  std::string add_elasticity(const core::Material& material, Eigen::Index first) {
+    if (!material.orthotropy) {
+      text_ << "*MATERIAL, NAME=M" << first << "\n*ELASTIC\n"
+            << material.youngs_modulus_pa << ',' << material.poissons_ratio << '\n';
+      return {};
+    }
+    const core::Orthotropy& elasticity = *material.orthotropy;
+    const Eigen::Matrix3d axes = core::rotation(elasticity.rotation_rad);
+    text_ << "*ORIENTATION, NAME=O" << first << ", SYSTEM=RECTANGULAR\n"
+          << axes(0, 0) << ',' << axes(1, 0) << ',' << axes(2, 0) << ',' << axes(0, 1) << ','
+          << axes(1, 1) << ',' << axes(2, 1) << "\n*MATERIAL, NAME=M" << first
+          << "\n*ELASTIC, TYPE=ENGINEERING CONSTANTS\n";
+    const double unit_pa = material.youngs_modulus_pa;
+    for (const double modulus : elasticity.moduli) {
+      text_ << modulus * unit_pa << ',';
+    }
+    for (const double ratio : elasticity.poissons_ratios) {
+      text_ << ratio << ',';
+    }
+    text_ << elasticity.shear_moduli[0] * unit_pa << ',' << elasticity.shear_moduli[1] * unit_pa
+          << '\n'
+          << elasticity.shear_moduli[2] * unit_pa << '\n';
+    return fmt::format(", ORIENTATION=O{}", first);
+  }
   void add_constraints(const core::Plate& plate, const core::TetMesh& mesh, Eigen::Index first) {
     const auto held = core::constrained_dofs(mesh, plate.shape, plate.fixations);
     text_ << "*BOUNDARY\n";

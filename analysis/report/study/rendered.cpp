@@ -1,6 +1,7 @@
 #include "analysis/report/study/rendered.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,6 +89,15 @@ ReportTable stimuli_table(const RenderedStudy& study) {
   return table;
 }
 
+// Shown in GPa; data has the first.
+Cell moduli_cell(const std::vector<double>& moduli_pa) {
+  std::vector<std::string> shown;
+  for (const double modulus_pa : moduli_pa) {
+    shown.push_back(rounded(1e-9 * modulus_pa));
+  }
+  return {fmt::format("{}", fmt::join(shown, ", ")), {moduli_pa.front()}};
+}
+
 ReportTable models_table(const RenderedStudy& study) {
   ReportTable table{
       "rendered_models",
@@ -98,11 +108,9 @@ ReportTable models_table(const RenderedStudy& study) {
        column("elements", "elements"), column("nodes", "nodes"), column("order", "order"),
        column("residual", "worst_residual"), column("error", "estimated_relative_error")}};
   for (const RenderedStimulus& stimulus : study.stimuli) {
-    std::vector<Cell> row{
-        named(stimulus),
-        word(stimulus.material),
-        {rounded(1e-9 * stimulus.youngs_modulus_pa), {stimulus.youngs_modulus_pa}},
-        number(stimulus.density_kg_per_m3)};
+    std::vector<Cell> row{named(stimulus), word(stimulus.material),
+                          moduli_cell(stimulus.youngs_moduli_pa),
+                          number(stimulus.density_kg_per_m3)};
     if (stimulus.model) {
       const RenderedModel& model = *stimulus.model;
       row.insert(row.end(), {count(static_cast<std::int64_t>(model.frequencies_hz.size())),
@@ -234,6 +242,10 @@ bool lacks_model(const RenderedStimulus& stimulus) {
   return stimulus.needs_model && !stimulus.model;
 }
 
+bool is_orthotropic(const RenderedStimulus& stimulus) {
+  return stimulus.youngs_moduli_pa.size() > 1;
+}
+
 bool has_drawn_points(const StimulusTaps& stimulus) {
   return std::ranges::any_of(
       stimulus.points, [](const PointTaps& at) { return at.taps.taps() >= least_drawn_taps; });
@@ -258,6 +270,19 @@ void say_what_is_missing(const RenderedStudy& study, ReportSection& section) {
     section.remarks.emplace_back(
         "Where modes are left out, no model of this version of the program is cached on this "
         "machine: `tapstudy check` of the protocol makes one.");
+  }
+  for (const RenderedStimulus& stimulus : study.stimuli) {
+    if (stimulus.model && !stimulus.model->relaxed_radius_edge_ratio.empty()) {
+      section.remarks.push_back(fmt::format(
+          "The mesh of {} has a radius-edge ratio of {}, as that would have taken too many "
+          "tetrahedra.",
+          stimulus.label, stimulus.model->relaxed_radius_edge_ratio));
+    }
+  }
+  if (std::ranges::any_of(study.stimuli, is_orthotropic)) {
+    section.remarks.emplace_back(
+        "Where a material has three moduli, it is orthotropic, and they are those along its own "
+        "axes; data has the first.");
   }
   if (std::ranges::any_of(study.stimuli, &RenderedStimulus::varies)) {
     section.remarks.emplace_back(

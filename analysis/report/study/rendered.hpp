@@ -25,6 +25,9 @@ struct RenderedModel {
   std::vector<double> frequencies_hz;  // of its modes in the band, ascending
   std::vector<double> damping_ratios;
   int order{};
+  // "2 instead of 1.414", of each body whose mesher was given a larger radius-edge ratio than asked
+  // for; empty: none.
+  std::string relaxed_radius_edge_ratio;
   int nodes{};
   int tets{};
   double worst_residual{};  // of the eigenpairs
@@ -40,7 +43,7 @@ struct RenderedStimulus {
   std::string plate;
   std::string size;
   std::string material;
-  double youngs_modulus_pa{};
+  std::vector<double> youngs_moduli_pa;  // of an orthotropic material along its axes; at least one
   double density_kg_per_m3{};
   std::string fixation;
   std::string technique;

@@ -285,11 +285,13 @@ void orient_edges(const TetMesh& mesh, Eigen::Index tet, TetElement<Nodes>& elem
 template <int Nodes>
 void add_elements(const TetMesh& mesh, const Material& material, const Pattern& pattern,
                   StiffnessAndMass& matrices) {
+  const ElasticStiffness elasticity{material};
   for (Eigen::Index tet = 0; tet < mesh.tets.rows(); ++tet) {
     if (!(tet_volume_m3(mesh, tet) > 0.0)) {
       throw ModelError{fmt::format("mesh: tetrahedron {} has no volume", tet)};
     }
-    TetElement<Nodes> element = tet_element<Nodes>(corners_of(mesh, tet), material);
+    TetElement<Nodes> element =
+        tet_element<Nodes>(corners_of(mesh, tet), elasticity, material.density_kg_per_m3);
     orient_edges<Nodes>(mesh, tet, element);
     for (Eigen::Index j = 0; j < Nodes; ++j) {
       for (Eigen::Index i = 0; i < Nodes; ++i) {

@@ -71,11 +71,23 @@ Damping scaled(Damping damping, double factor) {
   return damping;
 }
 
+std::vector<double> youngs_moduli_pa(const Material& material) {
+  std::vector<double> moduli_pa;
+  if (!material.orthotropy) {
+    return {material.youngs_modulus_pa};
+  }
+  for (const double modulus : material.orthotropy->moduli) {
+    moduli_pa.push_back(modulus * material.youngs_modulus_pa);
+  }
+  return moduli_pa;
+}
+
 std::string content_key(const Material& material) {
   return fmt::format(
-      "material({:a},{:a},{:a},{})", material.youngs_modulus_pa, material.density_kg_per_m3,
+      "material({:a},{:a},{:a},{}{})", material.youngs_modulus_pa, material.density_kg_per_m3,
       material.poissons_ratio,
-      std::visit([](const auto& damping) { return key_of(damping); }, material.damping));
+      std::visit([](const auto& damping) { return key_of(damping); }, material.damping),
+      content_key(material.orthotropy));
 }
 
 void check_material(const Material& material) {
@@ -86,5 +98,10 @@ void check_material(const Material& material) {
   require(std::isfinite(density) && density > 0.0, "density_kg_per_m3", density, "greater than 0");
   require(poisson > -1.0 && poisson < 0.5, "poissons_ratio", poisson,
           "greater than -1 and less than 0.5");
+  if (material.orthotropy) {
+    if (const auto fault = fault_of(*material.orthotropy)) {
+      throw InvalidInput{fmt::format("{}: {}", fault->property, fault->words)};
+    }
+  }
 }
 }  // namespace tapstudy::core

@@ -3,6 +3,8 @@
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "core/model/elements/orthotropy.hpp"
 namespace tapstudy::core {
 // C = alpha M + beta K (paper eq. 3).
 struct RayleighDamping {
@@ -40,13 +42,17 @@ using Damping =
 // multiplied by it, because eq. 12 and 13 are linear in them. factor >= 0.
 Damping scaled(Damping damping, double factor);
 
-// Homogeneous, isotropic, linearly elastic.
+// Homogeneous, linearly elastic.
 struct Material {
-  double youngs_modulus_pa{};  // > 0
+  double youngs_modulus_pa{};  // > 0; of an orthotropic material E_1, that of its first axis
   double density_kg_per_m3{};  // > 0
-  double poissons_ratio{};     // in (-1, 0.5)
+  double poissons_ratio{};     // in (-1, 0.5); of an orthotropic material unused, 0
   Damping damping{};
+  std::optional<Orthotropy> orthotropy{};  // unset: isotropic
 };
+
+// Along the axes of an orthotropic material, in order; of an isotropic one the only modulus.
+std::vector<double> youngs_moduli_pa(const Material& material);
 
 // Equal text for equal materials.
 std::string content_key(const Material& material);

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
+#include <optional>
 
+#include "core/algebra/lapack.hpp"
 #include "core/model/elements/assembly.hpp"
 namespace tapstudy::core {
 namespace {
 using Barycentric = Eigen::Vector3d;
-using Corners = std::array<Barycentric, 3>;
-
-// Minimum and maximum number of subdivisions of a triangle: the minimum finds regions that hold
-// none of its nodes, the maximum is reached along a region's rim.
-constexpr int least_divisions = 2;
-constexpr int most_divisions = 6;
 
 // Linear; quadratic with mid-side nodes of the edges 01 12 20; or cubic, with the functions of
 // these edges, from the corner of the lower number, and of the face (TetElement<20>).
@@ -36,99 +33,54 @@ Eigen::VectorXd shape_functions(const Barycentric& at, const TetMesh::Indices& s
   return shape;
 }
 
-// Exact up to the fourth degree (Dunavant 1985, High degree efficient symmetrical Gaussian
-// quadrature rules for the triangle): two orbits of three points.
+// Exact up to the sixth degree, that of the products of cubic functions (Dunavant 1985, High degree
+// efficient symmetrical Gaussian quadrature rules for the triangle): all different orders of the
+// coordinates of each row.
 struct Orbit {
   double weight;
-  double major;
+  std::array<double, 3> at;
 };
-constexpr std::array<Orbit, 2> quadrature{Orbit{0.223381589678011, 0.108103018168070},
-                                          Orbit{0.109951743655322, 0.816847572980459}};
+constexpr std::array<Orbit, 3> quadrature{
+    Orbit{0.116786275726379, {0.249286745170910, 0.249286745170910, 0.501426509658179}},
+    Orbit{0.050844906370207, {0.063089014491502, 0.063089014491502, 0.873821971016996}},
+    Orbit{0.082851075618374, {0.053145049844817, 0.310352451033784, 0.636502499121399}}};
 
-// Integrates over the parts of one triangle that lie in the region.
-class PartIntegral {
- public:
-  PartIntegral(const TetMesh& mesh, Eigen::Index triangle, const SurfaceRegion& region)
-      : region_{region}, surface_{mesh.surface} {
-    for (Eigen::Index corner = 0; corner < 3; ++corner) {
-      corners_m_.col(corner) = mesh.nodes_m.row(mesh.surface(triangle, corner)).transpose();
-    }
-    part_.triangle = triangle;
-    part_.products_m2 = Eigen::MatrixXd::Zero(surface_.cols(), surface_.cols());
-    add({Barycentric::UnitX(), Barycentric::UnitY(), Barycentric::UnitZ()},
-        triangle_area_m2(mesh, triangle), 0);
+// The integrals of N N^T over a triangle, N the shape functions of its nodes.
+Eigen::MatrixXd products_m2(const TetMesh& mesh, Eigen::Index triangle) {
+  const Eigen::Index functions = mesh.surface.cols();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(functions, functions);
+  for (const Orbit& orbit : quadrature) {
+    std::array<double, 3> at = orbit.at;  // ascending
+    do {
+      const Eigen::VectorXd shape =
+          shape_functions(Eigen::Map<const Barycentric>{at.data()}, mesh.surface, triangle);
+      sum += orbit.weight * shape * shape.transpose();
+    } while (std::ranges::next_permutation(at).found);
   }
-  const TrianglePart& part() const { return part_; }
-
- private:
-  bool holds(const Barycentric& at) const { return region_.holds(corners_m_ * at); }
-
-  void add(const Corners& corners, double area_m2, int divisions) {
-    const auto inside =
-        std::ranges::count_if(corners, [this](const Barycentric& at) { return holds(at); });
-    if (inside == 3) {  // the region is convex
-      add_whole(corners, area_m2);
-    } else if (divisions == most_divisions) {
-      if (holds((corners[0] + corners[1] + corners[2]) / 3.0)) {
-        add_whole(corners, area_m2);
-      }
-    } else if (inside > 0 || divisions < least_divisions) {
-      divide(corners, area_m2, divisions);
-    }
-  }
-  void divide(const Corners& corners, double area_m2, int divisions) {
-    const auto& [a, b, c] = corners;
-    const Barycentric ab = 0.5 * (a + b);
-    const Barycentric bc = 0.5 * (b + c);
-    const Barycentric ca = 0.5 * (c + a);
-    for (const Corners& quarter :
-         {Corners{a, ab, ca}, Corners{ab, b, bc}, Corners{ca, bc, c}, Corners{ab, bc, ca}}) {
-      add(quarter, 0.25 * area_m2, divisions + 1);
-    }
-  }
-  void add_whole(const Corners& corners, double area_m2) {
-    part_.area_m2 += area_m2;
-    for (const Orbit& orbit : quadrature) {
-      const double minor = 0.5 * (1.0 - orbit.major);
-      for (std::size_t first = 0; first < 3; ++first) {
-        const Barycentric at = orbit.major * corners.at(first) +
-                               minor * (corners.at((first + 1) % 3) + corners.at((first + 2) % 3));
-        const Eigen::VectorXd shape = shape_functions(at, surface_, part_.triangle);
-        part_.products_m2 += orbit.weight * area_m2 * shape * shape.transpose();
-      }
-    }
-  }
-
-  const SurfaceRegion& region_;
-  const TetMesh::Indices& surface_;
-  Eigen::Matrix3d corners_m_;
-  TrianglePart part_;
-};
+  return triangle_area_m2(mesh, triangle) * sum;
+}
 }  // namespace
 
-std::vector<TrianglePart> parts_within(const TetMesh& mesh, const SurfaceRegion& region) {
-  std::vector<TrianglePart> parts;
+std::vector<Eigen::Index> triangles_between(const TetMesh& mesh,
+                                            const std::vector<Eigen::Index>& nodes) {
+  const std::vector<bool> is_in = mesh.marked(nodes);
+  std::vector<Eigen::Index> between;
   for (Eigen::Index triangle = 0; triangle < mesh.surface.rows(); ++triangle) {
-    const TrianglePart part = PartIntegral{mesh, triangle, region}.part();
-    if (part.area_m2 > 0.0) {
-      parts.push_back(part);
+    if (std::ranges::all_of(mesh.surface.row(triangle).head<3>(),
+                            [&](int corner) { return is_in[static_cast<std::size_t>(corner)]; })) {
+      between.push_back(triangle);
     }
   }
-  return parts;
+  return between;
 }
 
 std::vector<NodeWeight> mean_weights(const TetMesh& mesh, const std::vector<Eigen::Index>& nodes) {
-  const std::vector<bool> is_in = mesh.marked(nodes);
-  const auto is_within = [&](int node) { return is_in[static_cast<std::size_t>(node)]; };
   std::map<Eigen::Index, double> weight_of;
   double whole_m2 = 0.0;
   // The integral of a quadratic shape function over its triangle is 0 for a corner and a third of
   // the area for a mid-side node; of a linear one a third of the area.
   const Eigen::Index first = mesh.order() == 2 ? 3 : 0;
-  for (Eigen::Index triangle = 0; triangle < mesh.surface.rows(); ++triangle) {
-    if (!std::ranges::all_of(mesh.surface.row(triangle), is_within)) {
-      continue;
-    }
+  for (const Eigen::Index triangle : triangles_between(mesh, nodes)) {
     const double area_m2 = triangle_area_m2(mesh, triangle);
     whole_m2 += area_m2;
     for (Eigen::Index i = first; i < first + 3; ++i) {
@@ -148,40 +100,216 @@ std::vector<NodeWeight> mean_weights(const TetMesh& mesh, const std::vector<Eige
 }
 
 namespace {
-// K of two nodes, or of one.
-class Coupling {
+// 1 and the coordinates of a place, from the middle of a region and relative to its size: any
+// motion that does not deform it is linear in these.
+class LinearFields {
  public:
-  Coupling(const FreeDofs& dofs, const Eigen::Vector3d& stiffness_n_per_m,
-           Eigen::SparseMatrix<double>& K)
-      : dofs_{dofs}, stiffness_n_per_m_{stiffness_n_per_m}, k_{K} {}
+  using Values = Eigen::Vector4d;
+  using Moments = Eigen::Matrix4d;  // means of the products of these over a region
 
-  void add(Eigen::Index row, Eigen::Index column, double share) const {
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const int a = dofs_.position[static_cast<std::size_t>(3 * row + axis)];
-      const int b = dofs_.position[static_cast<std::size_t>(3 * column + axis)];
-      if (b >= 0 && a >= b && stiffness_n_per_m_[axis] > 0.0) {
-        k_.coeffRef(a, b) += share * stiffness_n_per_m_[axis];
-      }
+  LinearFields(const TetMesh& mesh, const std::vector<Eigen::Index>& nodes)
+      : mesh_{mesh}, middle_m_{mesh.nodes_m(nodes, Eigen::all).colwise().mean().transpose()} {
+    const double reach_m = (mesh.nodes_m(nodes, Eigen::all).rowwise() - middle_m_.transpose())
+                               .rowwise()
+                               .norm()
+                               .maxCoeff();
+    size_m_ = reach_m > 0.0 ? reach_m : 1.0;
+  }
+  Values at(const Eigen::Vector3d& place_m) const {
+    Values values;
+    values << 1.0, (place_m - middle_m_) / size_m_;
+    return values;
+  }
+  // Of each of the mesh's unknowns; 0 of hierarchic ones, which are no places.
+  Eigen::MatrixXd at_nodes() const {
+    const Eigen::Index places =
+        mesh_.order() == 3 ? mesh_.tets.leftCols<10>().maxCoeff() + 1 : mesh_.nodes_m.rows();
+    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(mesh_.nodes_m.rows(), 4);
+    for (Eigen::Index node = 0; node < places; ++node) {
+      values.row(node) = at(mesh_.nodes_m.row(node).transpose()).transpose();
     }
+    return values;
   }
 
  private:
-  const FreeDofs& dofs_;
-  const Eigen::Vector3d& stiffness_n_per_m_;
-  Eigen::SparseMatrix<double>& k_;
+  const TetMesh& mesh_;
+  Eigen::Vector3d middle_m_;
+  double size_m_{};
 };
 
-void add_foundation(const TetMesh& mesh, const std::vector<TrianglePart>& parts,
-                    const Coupling& coupling) {
-  double whole_m2 = 0.0;
-  for (const TrianglePart& part : parts) {
-    whole_m2 += part.area_m2;
+// The moments of the parts of surface triangles that lie in a region: exact for triangles that lie
+// in it whole; of others what a bisection of their edges, to a 64th, finds inside.
+class RegionMoments {
+ public:
+  RegionMoments(const TetMesh& mesh, const SurfaceRegion& region, const LinearFields& fields)
+      : region_{region}, fields_{fields} {
+    for (Eigen::Index triangle = 0; triangle < mesh.surface.rows(); ++triangle) {
+      Corners corners;
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        corners.at(static_cast<std::size_t>(i)) =
+            mesh.nodes_m.row(mesh.surface(triangle, i)).transpose();
+      }
+      add(corners, triangle_area_m2(mesh, triangle), 0);
+    }
   }
-  for (const TrianglePart& part : parts) {
-    for (Eigen::Index i = 0; i < part.products_m2.cols(); ++i) {
-      for (Eigen::Index j = 0; j < part.products_m2.cols(); ++j) {
-        coupling.add(mesh.surface(part.triangle, i), mesh.surface(part.triangle, j),
-                     part.products_m2(i, j) / whole_m2);
+  // nullopt where it holds no part of a triangle, such as a point.
+  std::optional<LinearFields::Moments> means() const {
+    return area_m2_ > 0.0 ? std::optional<LinearFields::Moments>{sum_m2_ / area_m2_} : std::nullopt;
+  }
+
+ private:
+  using Corners = std::array<Eigen::Vector3d, 3>;
+  // The least number of divisions finds regions that hold none of a triangle's corners, the
+  // greatest is reached along a region's rim.
+  static constexpr int least_divisions = 2;
+  static constexpr int most_divisions = 6;
+
+  void add(const Corners& corners, double area_m2, int divisions) {
+    const auto inside =
+        std::ranges::count_if(corners, [this](const auto& at_m) { return region_.holds(at_m); });
+    if (inside == 3) {  // the region is convex
+      add_whole(corners, area_m2);
+    } else if (divisions == most_divisions) {
+      if (region_.holds((corners[0] + corners[1] + corners[2]) / 3.0)) {
+        add_whole(corners, area_m2);
+      }
+    } else if (inside > 0 || divisions < least_divisions) {
+      divide(corners, area_m2, divisions);
+    }
+  }
+  void divide(const Corners& corners, double area_m2, int divisions) {
+    const auto& [a, b, c] = corners;
+    const Eigen::Vector3d ab = 0.5 * (a + b);
+    const Eigen::Vector3d bc = 0.5 * (b + c);
+    const Eigen::Vector3d ca = 0.5 * (c + a);
+    for (const Corners& quarter :
+         {Corners{a, ab, ca}, Corners{ab, b, bc}, Corners{ca, bc, c}, Corners{ab, bc, ca}}) {
+      add(quarter, 0.25 * area_m2, divisions + 1);
+    }
+  }
+  // The integral of f f' over a triangle, f linear: A / 12 (sum of f_i f_i' + sum f_i sum f_i').
+  void add_whole(const Corners& corners, double area_m2) {
+    LinearFields::Values sum = LinearFields::Values::Zero();
+    for (const Eigen::Vector3d& corner_m : corners) {
+      const LinearFields::Values values = fields_.at(corner_m);
+      sum += values;
+      sum_m2_ += area_m2 / 12.0 * values * values.transpose();
+    }
+    sum_m2_ += area_m2 / 12.0 * sum * sum.transpose();
+    area_m2_ += area_m2;
+  }
+
+  const SurfaceRegion& region_;
+  const LinearFields& fields_;
+  LinearFields::Moments sum_m2_{LinearFields::Moments::Zero()};
+  double area_m2_{0.0};
+};
+
+// Of these nodes, those that none of the triangles has.
+std::vector<Eigen::Index> alone(const TetMesh& mesh, const std::vector<Eigen::Index>& nodes,
+                                const std::vector<Eigen::Index>& triangles) {
+  std::vector<Eigen::Index> of_triangles;
+  for (const Eigen::Index triangle : triangles) {
+    const auto row = mesh.surface.row(triangle);
+    of_triangles.insert(of_triangles.end(), row.begin(), row.end());
+  }
+  const std::vector<bool> is_of_triangle = mesh.marked(of_triangles);
+  std::vector<Eigen::Index> left;
+  std::ranges::copy_if(nodes, std::back_inserter(left), [&](Eigen::Index node) {
+    return !is_of_triangle[static_cast<std::size_t>(node)];
+  });
+  return left;
+}
+
+// How a stiffness of 1, along any axis, is shared out over pairs of a mesh's unknowns.
+SparseMatrix shares_of_nodes(const TetMesh& mesh, const std::vector<Eigen::Index>& nodes) {
+  const std::vector<Eigen::Index> triangles = triangles_between(mesh, nodes);
+  const std::vector<Eigen::Index> single = alone(mesh, nodes, triangles);
+  const double of_node = 1.0 / static_cast<double>(nodes.size());
+  double whole_m2 = 0.0;
+  for (const Eigen::Index triangle : triangles) {
+    whole_m2 += triangle_area_m2(mesh, triangle);
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Eigen::Index triangle : triangles) {
+    const Eigen::MatrixXd shares = (1.0 - of_node * static_cast<double>(single.size())) / whole_m2 *
+                                   products_m2(mesh, triangle);
+    for (Eigen::Index i = 0; i < shares.rows(); ++i) {
+      for (Eigen::Index j = 0; j < shares.cols(); ++j) {
+        entries.emplace_back(mesh.surface(triangle, i), mesh.surface(triangle, j), shares(i, j));
+      }
+    }
+  }
+  for (const Eigen::Index node : single) {
+    entries.emplace_back(static_cast<int>(node), static_cast<int>(node), of_node);
+  }
+  const auto size = static_cast<int>(mesh.nodes_m.rows());
+  SparseMatrix shares(size, size);
+  shares.setFromTriplets(entries.begin(), entries.end());
+  return shares;
+}
+
+// The inverse on the fields that the nodes of a region tell apart: of a plane one, not those across
+// it; of a single node, only the constant.
+LinearFields::Moments inverse_of_told(const LinearFields::Moments& moments) {
+  constexpr double told = 1e-9;
+  const auto pairs = symmetric_eigenpairs(moments);
+  LinearFields::Moments inverse = LinearFields::Moments::Zero();
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    if (pairs.values[i] > told) {
+      inverse += pairs.vectors.col(i) * pairs.vectors.col(i).transpose() / pairs.values[i];
+    }
+  }
+  return inverse;
+}
+
+// K becomes K + G' (S - S0) G, G taking from displacements their linear part as K weighs them, S0
+// and S being the moments of K and of the region itself. What is orthogonal to it by K stays, so
+// that K holds the same nodes; for that, S has a little of S0 where the region has no extent.
+void correct_linear_part(const SurfaceRegion& region, const TetMesh& mesh, SparseMatrix& shares) {
+  constexpr double rounding = 1e-9;
+  constexpr double little = 1e-3;
+  constexpr std::size_t most_nodes = 1500;  // their pairs are 50 MB; so many follow the region well
+  const LinearFields fields{mesh, region.nodes};
+  const auto wanted = RegionMoments{mesh, region, fields}.means();
+  const Eigen::MatrixXd weighed = shares * fields.at_nodes();
+  const LinearFields::Moments held = fields.at_nodes().transpose() * weighed;
+  if (!wanted || region.nodes.size() > most_nodes || (*wanted - held).norm() < rounding) {
+    return;
+  }
+  const Eigen::MatrixXd linear_part = weighed * inverse_of_told(held);
+  std::vector<int> involved;
+  for (int node = 0; node < static_cast<int>(linear_part.rows()); ++node) {
+    if (!linear_part.row(node).isZero(0.0)) {
+      involved.push_back(node);
+    }
+  }
+  const Eigen::MatrixXd of_involved = linear_part(involved, Eigen::all);
+  const LinearFields::Moments change = (*wanted - held) / (1.0 + little);
+  const Eigen::MatrixXd added = of_involved * change * of_involved.transpose();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t j = 0; j < involved.size(); ++j) {
+    for (std::size_t i = 0; i < involved.size(); ++i) {
+      entries.emplace_back(involved[i], involved[j],
+                           added(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    }
+  }
+  SparseMatrix correction(shares.rows(), shares.cols());
+  correction.setFromTriplets(entries.begin(), entries.end());
+  shares += correction;
+}
+
+// Of the lower triangle, along each axis.
+void add_axes(const SparseMatrix& shares, const Eigen::Vector3d& stiffness_n_per_m,
+              const FreeDofs& dofs, std::vector<Eigen::Triplet<double>>& entries) {
+  for (Eigen::Index column = 0; column < shares.outerSize(); ++column) {
+    for (SparseMatrix::InnerIterator share{shares, column}; share; ++share) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const int a = dofs.position[static_cast<std::size_t>(3 * share.row() + axis)];
+        const int b = dofs.position[static_cast<std::size_t>(3 * column + axis)];
+        if (b >= 0 && a >= b && stiffness_n_per_m[axis] > 0.0) {
+          entries.emplace_back(a, b, share.value() * stiffness_n_per_m[axis]);
+        }
       }
     }
   }
@@ -190,17 +318,16 @@ void add_foundation(const TetMesh& mesh, const std::vector<TrianglePart>& parts,
 
 void add_springs(const TetMesh& mesh, const std::vector<SpringSupport>& supports,
                  const FreeDofs& dofs, Eigen::SparseMatrix<double>& K) {
+  std::vector<Eigen::Triplet<double>> entries;
   for (const SpringSupport& support : supports) {
-    const Coupling coupling{dofs, support.stiffness_n_per_m, K};
-    const auto parts = parts_within(mesh, support.region);
-    if (!parts.empty()) {
-      add_foundation(mesh, parts, coupling);
-      continue;
-    }
-    const std::vector<Eigen::Index>& nodes = support.region.nodes;
-    for (const Eigen::Index node : nodes) {
-      coupling.add(node, node, 1.0 / static_cast<double>(nodes.size()));
-    }
+    SparseMatrix shares = shares_of_nodes(mesh, support.region.nodes);
+    correct_linear_part(support.region, mesh, shares);
+    add_axes(shares, support.stiffness_n_per_m, dofs, entries);
+  }
+  if (!entries.empty()) {
+    SparseMatrix springs(K.rows(), K.cols());
+    springs.setFromTriplets(entries.begin(), entries.end());
+    K += springs;
   }
 }
 }  // namespace tapstudy::core

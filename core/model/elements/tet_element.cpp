@@ -11,33 +11,14 @@ namespace {
 template <int Nodes>
 using Gradients = Eigen::Matrix<double, Nodes, 3>;  // one node's shape function per row [1/m]
 
-// Lamé's constants [Pa].
-struct Lame {
-  double lambda;
-  double shear;
-};
-
-Lame lame_of(const Material& material) {
-  const double youngs = material.youngs_modulus_pa;
-  const double poisson = material.poissons_ratio;
-  return {youngs * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
-          youngs / (2.0 * (1.0 + poisson))};
-}
-
-// The stiffness block of nodes a, b with shape function gradients g_a, g_b:
-//   lambda g_a g_b' + shear (g_b g_a' + (g_a . g_b) I)
-// which is B_a' D B_b written out for an isotropic body.
 template <int Nodes>
-void add_stiffness(const Gradients<Nodes>& gradients, const Lame& lame, double volume,
-                   TetElement<Nodes>& element) {
+void add_stiffness(const Gradients<Nodes>& gradients, const ElasticStiffness& elasticity,
+                   double volume, TetElement<Nodes>& element) {
   for (Eigen::Index b = 0; b < Nodes; ++b) {
-    const Eigen::Vector3d gb = gradients.row(b);
+    const Eigen::RowVector3d gb = volume * gradients.row(b);
     for (Eigen::Index a = b; a < Nodes; ++a) {
-      const Eigen::Vector3d ga = gradients.row(a);
-      Eigen::Matrix3d block = volume * lame.lambda * ga * gb.transpose();
-      block += volume * lame.shear * gb * ga.transpose();
-      block.diagonal().array() += volume * lame.shear * ga.dot(gb);
-      element.stiffness.template block<3, 3>(3 * a, 3 * b) += block;
+      element.stiffness.template block<3, 3>(3 * a, 3 * b) +=
+          elasticity.block(gradients.row(a).transpose() * gb);
     }
   }
 }
@@ -93,35 +74,36 @@ Geometry geometry_of(const TetCorners& corners_m) {
 }  // namespace
 
 template <>
-TetElement<4> tet_element<4>(const TetCorners& corners_m, const Material& material) {
+TetElement<4> tet_element<4>(const TetCorners& corners_m, const ElasticStiffness& elasticity,
+                             double density_kg_per_m3) {
   const auto [volume, gradients] = geometry_of(corners_m);
   TetElement<4> element;
   element.stiffness.setZero();
-  add_stiffness<4>(gradients, lame_of(material), volume, element);
+  add_stiffness<4>(gradients, elasticity, volume, element);
   mirror_lower(element);
   element.mass.setOnes();
   element.mass.diagonal().setConstant(2.0);
-  element.mass *= material.density_kg_per_m3 * volume / 20.0;
+  element.mass *= density_kg_per_m3 * volume / 20.0;
   return element;
 }
 
 // The integrand is quadratic over the element: four-point quadrature is exact.
 template <>
-TetElement<10> tet_element<10>(const TetCorners& corners_m, const Material& material) {
+TetElement<10> tet_element<10>(const TetCorners& corners_m, const ElasticStiffness& elasticity,
+                               double density_kg_per_m3) {
   const auto [volume, gradients] = geometry_of(corners_m);
   const double near = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0;
   const double far = (5.0 - std::sqrt(5.0)) / 20.0;
-  const Lame lame = lame_of(material);
   TetElement<10> element;
   element.stiffness.setZero();
   for (Eigen::Index point = 0; point < 4; ++point) {
     Eigen::Vector4d l = Eigen::Vector4d::Constant(far);
     l[point] = near;
-    add_stiffness<10>(quadratic_gradients(l, gradients), lame, 0.25 * volume, element);
+    add_stiffness<10>(quadratic_gradients(l, gradients), elasticity, 0.25 * volume, element);
   }
   mirror_lower(element);
   static const Eigen::Matrix<double, 10, 10> mass = quadratic_mass();
-  element.mass = material.density_kg_per_m3 * volume / 420.0 * mass;
+  element.mass = density_kg_per_m3 * volume / 420.0 * mass;
   return element;
 }
 
@@ -225,23 +207,21 @@ CubicIntegrals cubic_integrals() {
 }  // namespace
 
 template <>
-TetElement<20> tet_element<20>(const TetCorners& corners_m, const Material& material) {
+TetElement<20> tet_element<20>(const TetCorners& corners_m, const ElasticStiffness& elasticity,
+                               double density_kg_per_m3) {
   static const CubicIntegrals integrals = cubic_integrals();
   const auto [volume, gradients] = geometry_of(corners_m);
-  const Lame lame = lame_of(material);
   TetElement<20> element;
   for (Eigen::Index b = 0; b < 20; ++b) {
     for (Eigen::Index a = b; a < 20; ++a) {
       const Eigen::Matrix4d& slopes =
           integrals.slopes.at(static_cast<std::size_t>(a)).at(static_cast<std::size_t>(b));
-      const Eigen::Matrix3d products = volume * gradients.transpose() * slopes * gradients;
-      Eigen::Matrix3d block = lame.lambda * products + lame.shear * products.transpose();
-      block.diagonal().array() += lame.shear * products.trace();
-      element.stiffness.block<3, 3>(3 * a, 3 * b) = block;
+      element.stiffness.block<3, 3>(3 * a, 3 * b) =
+          elasticity.block(volume * gradients.transpose() * slopes * gradients);
     }
   }
   mirror_lower(element);
-  element.mass = material.density_kg_per_m3 * volume * integrals.mass;
+  element.mass = density_kg_per_m3 * volume * integrals.mass;
   return element;
 }
 }  // namespace tapstudy::core

@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "core/model/elements/material.hpp"
+#include "core/model/elements/elastic_stiffness.hpp"
 namespace tapstudy::core {
 // The element matrices of a straight-sided tetrahedron with 4 nodes (T4, linear) or 10 (T10,
 // quadratic), numbered as in TetMesh; or with 20 unknowns (cubic): T10's and the hierarchic
@@ -16,5 +16,6 @@ struct TetElement {
 using TetCorners = Eigen::Matrix<double, 4, 3>;  // one corner per row [m], positive volume
 
 template <int Nodes>
-TetElement<Nodes> tet_element(const TetCorners& corners_m, const Material& material);
+TetElement<Nodes> tet_element(const TetCorners& corners_m, const ElasticStiffness& elasticity,
+                              double density_kg_per_m3);
 }  // namespace tapstudy::core

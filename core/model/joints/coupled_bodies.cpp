@@ -260,9 +260,8 @@ std::vector<Fixation> regions_of(std::size_t body, const Joints& joints) {
 
 std::vector<DiscreteBody> all_discretised(const BodySpec& body, const ProgressHook& progress) {
   const Joints& joints = *body.joints;
-  const Material unit{1.0, 1.0, body.poissons_ratio, {}};
   std::vector<DiscreteBody> all{
-      discretised(body, unit, body.mesh.size, regions_of(0, joints), progress)};
+      discretised(body, body.unit_material(), body.mesh.size, regions_of(0, joints), progress)};
   for (const JoinedBody& other : joints.bodies) {
     all.push_back(discretised(other, other.material, other.mesh.size,
                               regions_of(all.size(), joints), progress));

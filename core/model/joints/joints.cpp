@@ -28,9 +28,9 @@ Joints relative_to(const Joints& joints, double youngs_modulus_pa, double densit
 std::string content_key(const Joints& joints) {
   std::string key = "contacts";
   for (const JoinedBody& body : joints.bodies) {
-    key += fmt::format(" body({},{:a},{:a},{:a})", content_key(static_cast<const Plate&>(body)),
+    key += fmt::format(" body({},{:a},{:a},{:a}{})", content_key(static_cast<const Plate&>(body)),
                        body.material.youngs_modulus_pa, body.material.density_kg_per_m3,
-                       body.material.poissons_ratio);
+                       body.material.poissons_ratio, content_key(body.material.orthotropy));
   }
   for (const JointSpring& spring : joints.springs) {
     key += fmt::format(" spring({},{},{:a},{:a},{:a})", content_key(spring.from),

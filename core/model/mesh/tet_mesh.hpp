@@ -12,6 +12,14 @@ inline constexpr std::array<std::array<int, 2>, 6> tet_edges{
 inline constexpr std::array<std::array<int, 3>, 4> tet_faces{
     {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {0, 2, 3}}};
 
+// The bound on circumradius over shortest edge: what was asked for, and what the mesher was given,
+// which is larger where the one asked for would have taken too many elements. 0: no mesher's.
+struct RadiusEdgeRatio {
+  double asked{0.0};
+  double used{0.0};
+  bool is_relaxed() const { return used > asked; }
+};
+
 // A body meshed with straight-sided tetrahedra of order 1 (T4: corner nodes) or 2 (T10: corner
 // nodes, then mid-side nodes in the order of tet_edges); or of order 3, for error estimates only:
 // T10, then an unknown an edge and a face (tet_edges, tet_faces) that are no displacements of
@@ -24,8 +32,7 @@ struct TetMesh {
   Indices
       surface;  // 3 or 6 nodes per row: corners, outward counter-clockwise, then mid-side nodes
                 // of the edges 01 12 20 (order 3: 10; then these edges' and the face's unknowns)
-  // The bound on circumradius over shortest edge that the mesher was given; 0: no mesher's.
-  double radius_edge_ratio{0.0};
+  RadiusEdgeRatio radius_edge_ratio{};
   // Whether each node of the mesh is one of these.
   std::vector<bool> marked(const std::vector<Eigen::Index>& nodes) const;
   int order() const { return tets.cols() == 20 ? 3 : tets.cols() == 10 ? 2 : 1; }

@@ -227,7 +227,8 @@ void find_surface(TetMesh& mesh) {
   }
 }
 
-TetMesh mesh_from(const TetgenOutput& output, const Thickening& thickening, double ratio) {
+TetMesh mesh_from(const TetgenOutput& output, const Thickening& thickening,
+                  const RadiusEdgeRatio& ratio) {
   using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
   TetMesh mesh;
   mesh.radius_edge_ratio = ratio;
@@ -328,7 +329,7 @@ TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<V
     input.switches = tetgen_switches(tried);
     const TetgenOutput output = tetrahedra_of(input, shape);
     if (!has_too_many(input, output)) {
-      return mesh_from(output, thickening, ratio);
+      return mesh_from(output, thickening, {size.radius_edge_ratio, ratio});
     }
   }
   refuse_count(shape, size, ratios.back());

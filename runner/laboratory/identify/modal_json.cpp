@@ -129,9 +129,13 @@ Json json_of(const SinusoidLaw& law) {
 }
 
 Json json_of(const ModelComparison& model) {
-  Json json{{"material", model.material_name}, {"frequencies_hz", model.frequencies_hz},
-            {"youngs_modulus_pa", nullptr},    {"matched", Json::array()},
-            {"unmatched", Json::array()},      {"rival_pa", nullptr},
+  Json json{{"material", model.material_name},
+            {"frequencies_hz", model.frequencies_hz},
+            {"is_orthotropic", model.material->orthotropy.has_value()},
+            {"youngs_modulus_pa", nullptr},
+            {"matched", Json::array()},
+            {"unmatched", Json::array()},
+            {"rival_pa", nullptr},
             {"spring_factor", nullptr}};
   if (!model.update) {
     return json;

@@ -128,8 +128,13 @@ void print_model(const TapIdentification& found, const ModelComparison& model) {
     return;
   }
   const analysis::ModelUpdate& update = *model.update;
-  fmt::print("  Young's modulus {:.4g} Pa ({}); before {:.4g} Pa\n", update.youngs_modulus_pa.value,
-             interval(update.youngs_modulus_pa), model.material->youngs_modulus_pa);
+  fmt::print("  Young's modulus{} {:.4g} Pa ({}); before {:.4g} Pa\n",
+             model.material->orthotropy ? " along the material's first axis" : "",
+             update.youngs_modulus_pa.value, interval(update.youngs_modulus_pa),
+             model.material->youngs_modulus_pa);
+  if (model.material->orthotropy) {
+    fmt::print("  its other moduli, of shear too, are taken to be in proportion to it\n");
+  }
   if (update.matched.size() == 1) {
     fmt::print("  by one mode: the interval holds its noise, not the model's misfit\n");
   }

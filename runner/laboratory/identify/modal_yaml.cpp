@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "runner/laboratory/identify/modal_report.hpp"
@@ -227,14 +228,36 @@ std::string cautions_of(const analysis::ModelUpdate& update, std::size_t found) 
   return text;
 }
 
-std::string modulus_of(const ModelComparison& model) {
+std::string comment_of_modulus(const ModelComparison& model) {
   if (model.update) {
-    return fmt::format("{:.5g}  {}", model.update->youngs_modulus_pa.value,
-                       comment(model.update->youngs_modulus_pa));
+    return comment(model.update->youngs_modulus_pa);
   }
   const bool are_springs_kept = model.is_on_springs && !model.springs;
-  return fmt::format("{:.5g}  # the protocol's: {}", model.material->youngs_modulus_pa,
+  return fmt::format("# the protocol's: {}",
                      are_springs_kept ? "not told apart from its springs" : "no mode matched");
+}
+
+std::string three(const std::array<double, 3>& relative, double unit) {
+  return fmt::format("[{:.5g}, {:.5g}, {:.5g}]", unit * relative[0], unit * relative[1],
+                     unit * relative[2]);
+}
+
+// Of an orthotropic material all moduli are in proportion to the first, which was found.
+std::string elasticity_of(const ModelComparison& model) {
+  const core::Material& material = *model.material;
+  const double modulus_pa =
+      model.update ? model.update->youngs_modulus_pa.value : material.youngs_modulus_pa;
+  const std::string told = comment_of_modulus(model);
+  if (!material.orthotropy) {
+    return fmt::format("    youngs_modulus_pa: {:.5g}  {}\n    poissons_ratio: {:.9g}\n",
+                       modulus_pa, told, material.poissons_ratio);
+  }
+  const core::Orthotropy& elasticity = *material.orthotropy;
+  return fmt::format(
+      "    youngs_moduli_pa: {}  {}, of the first; all others in proportion\n"
+      "    shear_moduli_pa: {}\n    poissons_ratios: {}\n    axes_rotation_rad: {}\n",
+      three(elasticity.moduli, modulus_pa), told, three(elasticity.shear_moduli, modulus_pa),
+      three(elasticity.poissons_ratios, 1.0), three(elasticity.rotation_rad, 1.0));
 }
 }  // namespace
 
@@ -262,11 +285,9 @@ std::string yaml_of(const TapIdentification& found) {
   if (model.update) {
     text += cautions_of(*model.update, found.agreed.size());
   }
-  return text + fmt::format(
-                    "materials:\n  {}:\n    youngs_modulus_pa: {}\n    density_kg_per_m3: {:.9g}\n"
-                    "    poissons_ratio: {:.9g}\n{}",
-                    model.material_name, modulus_of(model), model.material->density_kg_per_m3,
-                    model.material->poissons_ratio, damping_of(found, "    "));
+  return text + fmt::format("materials:\n  {}:\n{}    density_kg_per_m3: {:.9g}\n{}",
+                            model.material_name, elasticity_of(model),
+                            model.material->density_kg_per_m3, damping_of(found, "    "));
 }
 
 namespace {

@@ -207,19 +207,25 @@ struct Extreme {
   std::function<void(Stage&, double)> set;
 };
 
-std::vector<Extreme> of_the_material() {
-  return {{"youngs_modulus_pa",
-           {1e3, 1e6, 1e9, 1e12},
-           [](Stage& stage, double value) { stage.plate.material.youngs_modulus_pa = value; }},
-          {"density_kg_per_m3",
-           {1.0, 100.0, 20000.0},
-           [](Stage& stage, double value) { stage.plate.material.density_kg_per_m3 = value; }},
-          {"poissons_ratio",
-           {-0.9, 0.0, 0.499, 0.4999},
-           [](Stage& stage, double value) { stage.plate.material.poissons_ratio = value; }},
-          {"damping_ratio",
-           {0.0, 0.5, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 2.0, 100.0},
-           [](Stage& stage, double value) { stage.damping_ratio = value; }}};
+// An orthotropic material has no single Poisson's ratio, and keeps its own.
+std::vector<Extreme> of_the_material(const core::Material& material) {
+  std::vector<Extreme> extremes{
+      {"youngs_modulus_pa",
+       {1e3, 1e6, 1e9, 1e12},
+       [](Stage& stage, double value) { stage.plate.material.youngs_modulus_pa = value; }},
+      {"density_kg_per_m3",
+       {1.0, 100.0, 20000.0},
+       [](Stage& stage, double value) { stage.plate.material.density_kg_per_m3 = value; }},
+      {"poissons_ratio",
+       {-0.9, 0.0, 0.499, 0.4999},
+       [](Stage& stage, double value) { stage.plate.material.poissons_ratio = value; }},
+      {"damping_ratio",
+       {0.0, 0.5, 1.0 - 1e-12, 1.0, 1.0 + 1e-12, 2.0, 100.0},
+       [](Stage& stage, double value) { stage.damping_ratio = value; }}};
+  if (material.orthotropy) {
+    std::erase_if(extremes, [](const Extreme& one) { return one.property == "poissons_ratio"; });
+  }
+  return extremes;
 }
 
 void make_thickness(Stage& stage, double to_width) {
@@ -275,8 +281,8 @@ Stability measure_stability(const protocols::Protocol& protocol,
   Stability stability;
   stability.penalty_limit_n_per_m =
       device::largest_stable_penalty_n_per_m(normal.hand, normal.rendering.dt_s);
-  for (const auto& group :
-       {of_the_material(), of_the_body(), of_the_tap(stability.penalty_limit_n_per_m)}) {
+  for (const auto& group : {of_the_material(normal.plate.material), of_the_body(),
+                            of_the_tap(stability.penalty_limit_n_per_m)}) {
     for (const Extreme& extreme : group) {
       for (const double value : extreme.values) {
         Stage stage = normal;

@@ -316,7 +316,7 @@ class Tradeoff {
       }
       Evaluation built;
       built.setting.mesh = mesh;
-      built.setting.mesh.order = body.report.order;
+      built.setting.mesh.order = body.report.order();
       built.setting.band_limit_hz = band_hz;
       built.setting.is_protocols = is_protocols;
       built.tets = body.report.tets;

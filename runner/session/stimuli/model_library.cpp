@@ -85,6 +85,7 @@ core::BodySpec body_spec(const protocols::Protocol& protocol,
   const auto may_share = [&](const protocols::Stimulus& other) {
     return other.technique->needs_model() && other.technique->theory == body.theory &&
            other.plate == stimulus.own_plate && other.contacts == stimulus.contacts &&
+           other.material->orthotropy == own.orthotropy &&
            (!core::is_on_springs(body.fixations) ||
             other.material->youngs_modulus_pa == own.youngs_modulus_pa) &&
            (!stimulus.contacts || (other.material->youngs_modulus_pa == own.youngs_modulus_pa &&

@@ -39,8 +39,9 @@ auto at_its_line(const protocols::PresentedStimulus& stimulus, const Build& buil
 core::PlateSpec plate_spec(const protocols::Protocol& protocol,
                            const protocols::PresentedStimulus& stimulus);
 
-// The unit-material body from which all vibrating stimuli with the same plate and Poisson's ratio
-// are scaled, with all their members: solved up to the highest band limit that any of them needs.
+// The unit-material body from which all vibrating stimuli with the same plate and Poisson's ratio,
+// or orthotropy, are scaled, with all their members: solved up to the highest band limit that any
+// of them needs.
 core::BodySpec body_spec(const protocols::Protocol& protocol,
                          const protocols::PresentedStimulus& stimulus);
 

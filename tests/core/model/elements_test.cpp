@@ -36,7 +36,8 @@ Element element(int order) {
   Nodes nodes{order == 1 ? 4 : 10, 3};
   nodes.topRows<4>() = c;
   if (order == 1) {
-    const auto tet = core::tet_element<4>(c, testing::mdf());
+    const auto tet = core::tet_element<4>(c, core::ElasticStiffness{testing::mdf()},
+                                          testing::mdf().density_kg_per_m3);
     return {nodes, tet.stiffness, tet.mass};
   }
   const std::vector<std::pair<int, int>> edges{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
@@ -44,7 +45,8 @@ Element element(int order) {
     nodes.row(static_cast<Eigen::Index>(4 + e)) =
         0.5 * (c.row(edges[e].first) + c.row(edges[e].second));
   }
-  const auto tet = core::tet_element<10>(c, testing::mdf());
+  const auto tet = core::tet_element<10>(c, core::ElasticStiffness{testing::mdf()},
+                                         testing::mdf().density_kg_per_m3);
   return {nodes, tet.stiffness, tet.mass};
 }
 // Displacements u = G x of the nodes.
@@ -241,6 +243,31 @@ TEST_CASE("springs lower every frequency below that of the constraint that they 
     before_hz = sprung_hz[0];
   }
   CHECK(before_hz == Approx(held_hz[0]).epsilon(1e-3));
+}
+
+// Regions that cut through triangles, and hold nodes inside the body and single ones.
+TEST_CASE("springs without bound become the rigid fixation of the same region, on any mesh",
+          "[core][model]") {
+  const int order = GENERATE(1, 2);
+  const core::RegionShape shape = GENERATE(core::RegionShape::disc, core::RegionShape::ball);
+  CAPTURE(order, static_cast<int>(shape));
+  core::Fixation foot;
+  foot.shape = shape;
+  foot.at_m = {0.04, 0.03, shape == core::RegionShape::ball ? -0.05 : 0.0};
+  foot.radius_m = 0.047;
+  foot.face = core::Face::through;
+  core::PlateSpec spec = block(order, 2e-5);
+  spec.material = testing::mdf();
+  spec.band_limit_hz = 1500.0;
+  spec.fixations = {foot};
+  const Eigen::ArrayXd held_hz = core::build_plate_model(spec).modal.frequency_hz;
+  REQUIRE(held_hz.size() >= 2);
+  for (const auto& [k, close] : {std::pair{1e14, 1e-3}, {1e16, 1e-5}}) {
+    spec.fixations.front().springs_n_per_m = core::Vec3{k, k, k};
+    const Eigen::ArrayXd sprung_hz = core::build_plate_model(spec).modal.frequency_hz;
+    REQUIRE(sprung_hz.size() == held_hz.size());
+    CHECK((sprung_hz / held_hz - 1.0).abs().maxCoeff() < close);
+  }
 }
 
 TEST_CASE("a support smaller than the elements shares its spring out over its nodes",

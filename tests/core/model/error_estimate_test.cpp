@@ -84,7 +84,8 @@ TEST_CASE("a cubic displacement stores its exact energies in an element of order
           "[core][element]") {
   TetCorners corners;
   corners << 0.1, 0.0, 0.02, 1.1, 0.1, 0.0, 0.3, 0.9, -0.1, 0.2, 0.3, 0.7;
-  const TetElement<20> element = tet_element<20>(corners, mdf);
+  const TetElement<20> element =
+      tet_element<20>(corners, core::ElasticStiffness{mdf}, mdf.density_kg_per_m3);
   const double lambda = mdf.youngs_modulus_pa * 0.25 / (1.25 * 0.5);
   const double shear = mdf.youngs_modulus_pa / 2.5;
   // Gauss's rule of five points a direction, in the collapsed coordinates of Stroud (1971).

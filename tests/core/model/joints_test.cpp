@@ -114,6 +114,20 @@ TEST_CASE("CalculiX finds the same frequencies of a board on a board",
   }
 }
 
+TEST_CASE("of each joined body it is known with which radius-edge ratio it was meshed",
+          "[core][model]") {
+  core::PlateSpec spec = BoardOnBoard{core::RegionShape::vertex}.board;
+  core::Joints joints = *spec.joints;
+  joints.bodies.front().mesh.size.radius_edge_ratio = 3.0;
+  spec.joints = std::make_shared<const core::Joints>(joints);
+  const core::ModelReport report = core::report_on(discrete(spec).bodies, core::Modes{});
+  REQUIRE(report.bodies.size() == 2);
+  CHECK(report.bodies[0].radius_edge_ratio.asked == spec.mesh.size.radius_edge_ratio);
+  CHECK(report.bodies[1].radius_edge_ratio.asked == 3.0);
+  CHECK(report.bodies[1].radius_edge_ratio.used == 3.0);
+  CHECK(report.bodies[1].order == 2);
+}
+
 TEST_CASE("a stiff block on four soft feet moves up and down at sqrt(k / m)", "[core][model]") {
   core::PlateSpec spec = stiff_block(60.0);
   core::JoinedBody ground{block({0.3, 0.3, 0.05}, 1e-4), material_of(1e13, 2000.0, 0.01)};

@@ -183,8 +183,11 @@ TEST_CASE(
   core::MeshSize size;
   size.radius_edge_ratio = 1.1;  // with which TetGen does not end near the poles
   const core::TetMesh mesh = core::mesh_shape(ball, size);
-  CHECK(mesh.radius_edge_ratio == 2.0);
-  CHECK(core::to_quadratic(mesh).radius_edge_ratio == 2.0);
+  CHECK(mesh.radius_edge_ratio.asked == 1.1);
+  CHECK(mesh.radius_edge_ratio.used == 2.0);
+  CHECK(core::to_quadratic(mesh).radius_edge_ratio.is_relaxed());
   CHECK(core::volume_m3(mesh) == Approx(core::volume_m3(ball)).epsilon(1e-9));
-  CHECK(core::mesh_shape(ball, {}).radius_edge_ratio == core::MeshSize{}.radius_edge_ratio);
+  const core::RadiusEdgeRatio usual = core::mesh_shape(ball, {}).radius_edge_ratio;
+  CHECK(usual.asked == core::MeshSize{}.radius_edge_ratio);
+  CHECK_FALSE(usual.is_relaxed());
 }

@@ -250,7 +250,12 @@ std::vector<core::PlateSpec> coarse_bodies() {
   sphere.fixations = {ball({0.0, 0.0, -0.1}, 0.03)};
   core::PlateSpec sliding = with_shape(core::Box{{0.3, 0.2, 0.02}}, 5e-6, 2000.0);
   sliding.fixations = {side(core::Side::left, {false, false, true}), ball({0.15, 0.1, 0.0}, 0.01)};
-  return {plate, block, sphere, sliding};
+  core::PlateSpec wooden = with_shape(core::Box{{0.3, 0.2, 0.02}}, 5e-6, 700.0);
+  wooden.fixations = {side(core::Side::left, {true, true, true})};
+  wooden.material = {1.1e10, 420.0, 0.0, core::ConstantDamping{0.01}};
+  wooden.material.orthotropy = core::Orthotropy{
+      {1.0, 0.07, 0.04}, {0.37, 0.42, 0.47}, {0.06, 0.055, 0.0035}, {0.3, -0.2, 0.5}};
+  return {plate, block, sphere, sliding, wooden};
 }
 }  // namespace
 
@@ -261,6 +266,7 @@ TEST_CASE("CalculiX finds the same frequencies on the same mesh", "[core][model]
   bodies[2].band_limit_hz = 4300.0;
   bodies[3].mesh.size.max_tet_volume_m3 = 1e-6;
   bodies[3].band_limit_hz = 1800.0;
+  bodies[4].mesh.size.max_tet_volume_m3 = 1e-6;
   bodies.push_back(bodies[0]);
   for (core::Fixation& corner : bodies.back().fixations) {
     corner.springs_n_per_m = core::Vec3{2e5, 3e5, 1e6};

@@ -96,6 +96,9 @@ TEST_CASE("what was kept is found to the last bit, under its own key only", "[co
   CHECK(found->touch_surface == modes.touch_surface);
   CHECK(found->touch_nodes_m == modes.touch_nodes_m);
   CHECK(found->report.dofs == modes.report.dofs);
+  REQUIRE(found->report.bodies.size() == 1);
+  CHECK(found->report.order() == modes.report.order());
+  CHECK(found->report.bodies[0].radius_edge_ratio.asked == core::MeshSize{}.radius_edge_ratio);
   CHECK_FALSE(cache.find("another plate"));
   CHECK_FALSE(ModelCache{directory / "models", "2"}.find("a plate"));  // of another program
 }

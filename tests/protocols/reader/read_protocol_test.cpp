@@ -10,6 +10,7 @@
 #include "protocols/form.hpp"
 #include "protocols/reader/earlier_defaults.hpp"
 #include "support/catch.hpp"
+#include "support/study_files.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
 using testing::replaced;
@@ -179,6 +180,48 @@ TEST_CASE("all that is wrong is said at once, in the order of the file", "[proto
   CHECK_THAT(said, Contains("stimuli.acrylic_two.plate: 'two_fixation' is not a known plate"));
   CHECK(said.find("mass_kg") < said.find("poissons_ratio"));
   CHECK(said.find("poissons_ratio") < said.find("two_fixation"));
+}
+
+TEST_CASE("an orthotropic material is read, and refused at its line by the inequality that fails",
+          "[protocols]") {
+  const auto with = [](const std::string& ratios) {
+    return replaced(replaced(discrimination(), "youngs_modulus_pa: 3.2e9",
+                             "youngs_moduli_pa: [4.0e9, 1.0e9, 2.0e9]\n"
+                             "    shear_moduli_pa: [8.0e8, 4.0e8, 2.0e8]\n"
+                             "    axes_rotation_rad: [0, 0, 1.5]"),
+                    "poissons_ratio: 0.35", "poissons_ratios: " + ratios);
+  };
+  const protocols::Protocol protocol =
+      protocols::parse_protocol(with("[0.3, 0.2, 0.1]"), "study.yaml");
+  const protocols::Material& acrylic = *protocol.stimulus("acrylic_two").material;
+  CHECK(acrylic.youngs_modulus_pa == 4e9);
+  REQUIRE(acrylic.orthotropy);
+  CHECK(*acrylic.orthotropy ==
+        core::Orthotropy{{1.0, 0.25, 0.5}, {0.3, 0.2, 0.1}, {0.2, 0.1, 0.05}, {0.0, 0.0, 1.5}});
+  CHECK_FALSE(protocol.stimulus("mdf_two").material->orthotropy);
+  CHECK_THAT(refusal(with("[2.5, 0.2, 0.1]")),
+             Contains("materials.acrylic.poissons_ratios: |nu_12| = 2.5 is not less than "
+                      "sqrt(E_1 / E_2) = 2"));
+}
+
+TEST_CASE("an orthotropic material is for no beam, and its Poisson's ratio does not vary",
+          "[protocols]") {
+  const auto orthotropic = [](const std::string& text) {
+    return replaced(replaced(text, "youngs_modulus_pa: 3.2e9",
+                             "youngs_moduli_pa: [4.0e9, 1.0e9, 2.0e9]\n"
+                             "    shear_moduli_pa: [8.0e8, 4.0e8, 2.0e8]"),
+                    "poissons_ratio: 0.35", "poissons_ratios: [0.3, 0.2, 0.1]");
+  };
+  const auto varied = [&](const std::string& axis) {
+    return orthotropic(testing::varied_study_text_with({axis}));
+  };
+  CHECK_THAT(refusal(varied("poissons_ratio: {values: [0.2, 0.3]}")),
+             Contains("vary.poissons_ratio: an orthotropic material has three of them"));
+  CHECK_NOTHROW(
+      protocols::parse_protocol(varied("youngs_modulus_pa: {from: 2e9, to: 8e9}"), "study.yaml"));
+  const std::string wooden =
+      orthotropic(testing::contents(testing::shipped("examples/cantilever_techniques.yaml")));
+  CHECK_THAT(refusal(wooden), Contains("a beam in closed form is isotropic"));
 }
 
 TEST_CASE("a plate with a scale of its own is tapped at the same places of the device",

@@ -70,3 +70,28 @@ blocks:
   CHECK_THAT(checked.standard_output, Contains("loose can move as a rigid body in 6 ways"));
   CHECK_THAT(checked.standard_output, !Contains("held can move"));
 }
+
+TEST_CASE("what a joined body states says nothing about the mesh of the plate that is tapped",
+          "[runner][check]") {
+  protocols::PresentedStimulus stimulus;
+  stimulus.name = "cup";
+  protocols::Plate tray;
+  tray.stated_at = "study.yaml:9:3: plates.tray";
+  tray.mesh.size.radius_edge_ratio = 3.0;
+  protocols::Contacts contacts;
+  contacts.plates = {nullptr, std::make_shared<const protocols::Plate>(tray)};
+  contacts.bodies.emplace_back();
+  contacts.bodies.back().mesh = tray.mesh;
+  stimulus.contacts = std::make_shared<const protocols::Contacts>(contacts);
+  core::ModelReport report;
+  report.bodies = {{2, {1.414, 1.414}}, {2, {3.0, 3.0}}};
+  CHECK(runner::note_of_relaxation(stimulus, report).empty());
+  report.bodies[0].radius_edge_ratio.used = 2.0;
+  CHECK_THAT(
+      runner::note_of_relaxation(stimulus, report),
+      Contains("cup is meshed with radius_edge_ratio: 2, as 1.414 would") && !Contains("tray"));
+  report.bodies = {{2, {1.414, 1.414}}, {2, {3.0, 4.0}}};
+  CHECK_THAT(runner::note_of_relaxation(stimulus, report),
+             Contains("body 1 that cup touches (study.yaml:9:3: plates.tray) is meshed with "
+                      "radius_edge_ratio: 4, as 3 would"));
+}

@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "runner/laboratory/identify/fits_over_taps.hpp"
+#include "runner/laboratory/identify/modal_report.hpp"
 #include "support/catch.hpp"
 #include "support/processes.hpp"
 #include "support/synthetic_taps.hpp"
@@ -174,4 +175,29 @@ TEST_CASE("one motion of a surface is one force on the finger, whichever sensor 
   CHECK(amplitude_n_s_per_m(analysis::Quantity::velocity, omega) == Approx(expected).epsilon(1e-9));
   CHECK(amplitude_n_s_per_m(analysis::Quantity::acceleration, omega * omega) ==
         Approx(expected).epsilon(1e-9));
+}
+
+TEST_CASE("what was found of an orthotropic material is pasted as one, all moduli in proportion",
+          "[runner][identify]") {
+  runner::TapIdentification found;
+  found.modes.emplace_back();
+  found.modes.front().frequency_hz.value = 120.0;
+  found.modes.front().damping_ratio.value = 0.01;
+  found.agreed = {0};
+  protocols::Material spruce;
+  spruce.youngs_modulus_pa = 1e10;
+  spruce.density_kg_per_m3 = 420.0;
+  spruce.orthotropy =
+      core::Orthotropy{{1.0, 0.07, 0.04}, {0.37, 0.42, 0.47}, {0.06, 0.055, 0.0035}, {0, 0, 0.5}};
+  found.model.emplace();
+  found.model->material = std::make_shared<const protocols::Material>(spruce);
+  found.model->material_name = "spruce";
+  found.model->update.emplace();
+  found.model->update->youngs_modulus_pa.value = 1.1e10;
+  const std::string yaml = runner::yaml_of(found);
+  CHECK_THAT(yaml, Contains("youngs_moduli_pa: [1.1e+10, 7.7e+08, 4.4e+08]") &&
+                       Contains("shear_moduli_pa: [6.6e+08, 6.05e+08, 3.85e+07]") &&
+                       Contains("poissons_ratios: [0.37, 0.42, 0.47]") &&
+                       Contains("axes_rotation_rad: [0, 0, 0.5]") &&
+                       !Contains("youngs_modulus_pa"));
 }

@@ -325,6 +325,26 @@ TEST_CASE("materials of one Poisson's ratio share one solution", "[runner][stimu
   CHECK(models.bodies_solved() == 2);  // four stimuli, two plates
 }
 
+TEST_CASE("an orthotropic material shares no solution with an isotropic one", "[runner][stimuli]") {
+  protocols::Protocol protocol = paper("discrimination.yaml");
+  for (protocols::Stimulus& stimulus : protocol.stimuli) {
+    protocols::Material material = *stimulus.material;
+    material.poissons_ratio = 0.0;
+    if (stimulus.name == "acrylic_two") {
+      material.orthotropy = core::Orthotropy{{1.0, 1.0, 1.0}, {0.3, 0.3, 0.3}, {0.4, 0.4, 0.4}, {}};
+    }
+    stimulus.material = std::make_shared<const protocols::Material>(material);
+  }
+  runner::ModelLibrary models{core::ModelCache{"", ""}};
+  models.build_all(protocol);
+  CHECK(models.bodies_solved() == 3);
+  const auto body = [&](const char* name) {
+    return models.body_of(protocol, stimulus_with(protocol, protocol.stimulus(name)));
+  };
+  CHECK(body("acrylic_two") != body("mdf_two"));
+  CHECK(body("acrylic_three") == body("mdf_three"));
+}
+
 TEST_CASE("on springs each Young's modulus has a solution of its own, and each density has not",
           "[runner][stimuli]") {
   protocols::Protocol protocol = paper("discrimination.yaml");

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <optional>
 
-#include "analysis/modal/decay/decay_band.hpp"
 #include "analysis/modal/modes/distinct_modes.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
@@ -27,27 +26,18 @@ double width(const Interval& interval) {
   return interval.high - interval.low;
 }
 
-// What all modes together show.
-struct Shown {
-  int taps{};  // of the mode that most taps show
-  double strongest{};
-};
-Shown shown_by(const std::vector<RepeatedMode>& modes) {
-  Shown all;
+int most_taps_of(const std::vector<RepeatedMode>& modes) {
+  int most = 0;
   for (const RepeatedMode& mode : modes) {
-    if (is_listed(mode)) {
-      all.taps = std::max(all.taps, mode.taps);
-      all.strongest = std::max(all.strongest, mode.amplitude);
-    }
+    most = is_listed(mode) ? std::max(most, mode.taps) : most;
   }
-  return all;
+  return most;
 }
 
 // Why a mode is not certain, or empty.
-std::string uncertainty_of(const RepeatedMode& mode, const Shown& all) {
-  if (mode.taps < least_share_of_taps * all.taps &&
-      mode.amplitude < weakest_sought * all.strongest) {
-    return fmt::format("weak, and in {} of {} taps only", mode.taps, all.taps);
+std::string uncertainty_of(const RepeatedMode& mode, int most_taps) {
+  if (mode.taps < least_share_of_taps * most_taps) {
+    return fmt::format("in {} of {} taps only", mode.taps, most_taps);
   }
   const Interval& ratio = mode.damping_ratio.interval;
   if (!(ratio.low > 0.0)) {
@@ -68,7 +58,7 @@ std::string uncertainty_of(const RepeatedMode& mode, const Shown& all) {
 }  // namespace
 
 void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes) {
-  const Shown all = shown_by(modes);
+  const int most_taps = most_taps_of(modes);
   for (RepeatedMode& mode : modes) {
     if (mode.standing == Standing::line) {
       continue;
@@ -78,7 +68,7 @@ void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes) {
       mode.why = fmt::format("fewer than {:g} periods in a decay", min_periods);
       continue;
     }
-    const std::string uncertain = uncertainty_of(mode, all);
+    const std::string uncertain = uncertainty_of(mode, most_taps);
     if (is_listed(mode) && !uncertain.empty()) {
       mode.standing = Standing::doubtful;
       mode.why = uncertain;

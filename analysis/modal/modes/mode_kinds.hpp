@@ -9,13 +9,13 @@ inline constexpr double min_periods = 3.0;
 // The widest interval of a mode's frequency, of the frequency.
 inline constexpr double widest_frequency = 0.1;
 
-// Of fewer taps than this share of those that show the most, a mode is certain only if it is within
-// weakest_sought of the strongest.
+// What fewer taps show than this share of those that show the most is certain in none: a mode's
+// nodes are lines, which few places lie on.
 inline constexpr double least_share_of_taps = 1.0 / 3.0;
 
 // What is listed as a mode is certain to be one: agreed ones become doubtful whose damping interval
 // holds 0 or whose frequency interval is wider than widest_frequency, with a reason, those that
-// are weak and in few taps (least_share_of_taps), and those that
+// few taps show (least_share_of_taps), and those that
 // are the blow's own pulse as likely: they die away in fewer than min_periods and sooner than a
 // blow is over (blow_s). What makes fewer than min_periods in a decay of this length becomes
 // background (unless it is a line), and so does what grows below the weakest mode's frequency.

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <lapacke.h>
 
+#include <Eigen/Cholesky>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/algebra/blas.hpp"
 #include "core/error.hpp"
 namespace tapstudy::core {
 namespace {
@@ -74,7 +77,32 @@ Eigen::MatrixXd pseudo_inverse(Eigen::MatrixXd A) {
   return pairs.vectors * inverses.asDiagonal() * pairs.vectors.transpose();
 }
 
+namespace {
+// Corrected seminormal equations (Björck 1987), with Cholesky's factors of A'A for those of A: as
+// exact as orthogonal factors while the columns are far from dependent, and several times quicker.
+std::optional<Eigen::VectorXd> by_normal_equations(const Eigen::MatrixXd& A,
+                                                   const Eigen::VectorXd& b) {
+  constexpr double dependent = 1e-8;  // what is left of a column of unit length, squared
+  Eigen::MatrixXd gram = inner_products(A, A);
+  const Eigen::VectorXd per_size = gram.diagonal().cwiseSqrt().cwiseInverse();
+  gram = per_size.asDiagonal() * gram * per_size.asDiagonal();
+  const Eigen::LDLT<Eigen::MatrixXd> factors{gram};
+  if (!gram.allFinite() || factors.info() != Eigen::Success ||
+      !(factors.vectorD().minCoeff() > dependent)) {
+    return std::nullopt;
+  }
+  const auto solved = [&](const Eigen::VectorXd& of) -> Eigen::VectorXd {
+    return per_size.cwiseProduct(factors.solve(per_size.cwiseProduct(A.transpose() * of)));
+  };
+  const Eigen::VectorXd solution = solved(b);
+  return solution + solved(b - A * solution);
+}
+}  // namespace
+
 LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b) {
+  if (const std::optional<Eigen::VectorXd> solution = by_normal_equations(A, b)) {
+    return {*solution, static_cast<int>(A.cols())};
+  }
   const lapack_int rows = as_lapack_int(A.rows());
   const lapack_int columns = as_lapack_int(A.cols());
   std::vector<lapack_int> pivots(static_cast<std::size_t>(columns), 0);

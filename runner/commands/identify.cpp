@@ -151,8 +151,8 @@ void add_identify(CommandParser& line) {
                         "SI units (m/s2, m/s, m) per unit of the recordings");
   command.option(
       "--band", options->band,
-      "LOW:HIGH in Hz; default: 10 to the highest peak of the recordings, at most 2000, or the "
-      "protocol's band limit");
+      "LOW:HIGH in Hz; default: 10 to the highest peak of the recordings, or the protocol's "
+      "band limit");
   command.number_within("--skip", question.finding.skip_s, 0.0, 1.0,
                         "Seconds after a tap's peak before it rings freely");
   command.number_within("--longest", question.finding.max_s, 0.05, 60.0,

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/algebra/blas.hpp"
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -28,17 +29,19 @@ double seconds(const DecayModel& model) {
 }
 
 Normal normal_equations(const WeightedDecay& decay, Eigen::Index shared) {
-  const Eigen::MatrixXd jacobian = decay.model.jacobian(decay.state);
-  const Eigen::MatrixXd of_shared = jacobian.leftCols(2 * shared) * seconds(decay.model);
-  Eigen::MatrixXd of_own = jacobian.rightCols(jacobian.cols() - 2 * shared);
-  const Eigen::VectorXd size = of_own.colwise().norm().cwiseMax(1e-300).transpose();
-  of_own = of_own * size.cwiseInverse().asDiagonal();
-  const double weight = decay.weight;
-  return {weight * of_shared.transpose() * of_shared,
-          weight * of_shared.transpose() * of_own,
-          weight * of_own.transpose() * of_own,
-          weight * of_shared.transpose() * decay.state.residual,
-          weight * of_own.transpose() * decay.state.residual,
+  Eigen::MatrixXd jacobian = decay.model.jacobian(decay.state);
+  const Eigen::Index own = jacobian.cols() - 2 * shared;
+  jacobian.leftCols(2 * shared) *= seconds(decay.model);
+  const Eigen::VectorXd size =
+      jacobian.rightCols(own).colwise().norm().cwiseMax(1e-300).transpose();
+  jacobian.rightCols(own) *= size.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd all = decay.weight * core::inner_products(jacobian, jacobian);
+  const Eigen::VectorXd slope = decay.weight * (jacobian.transpose() * decay.state.residual);
+  return {all.topLeftCorner(2 * shared, 2 * shared),
+          all.topRightCorner(2 * shared, own),
+          all.bottomRightCorner(own, own),
+          slope.head(2 * shared),
+          slope.tail(own),
           size};
 }
 
@@ -114,7 +117,7 @@ void exchange(std::vector<WeightedDecay>& decays, std::vector<DecayModel::State>
 }
 }  // namespace
 
-bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared) {
+bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared, double settled_share) {
   double damping = 1e-3;
   double before = sum_of_squares(decays);
   std::vector<Normal> normals = normal_equations(decays, shared);
@@ -130,7 +133,7 @@ bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared) {
       }
       continue;
     }
-    if (before - after <= 1e-7 * before) {
+    if (before - after <= settled_share * before) {
       return true;
     }
     before = after;
@@ -283,9 +286,9 @@ void set_shared_errors(const std::vector<WeightedDecay>& decays, std::size_t sha
 }  // namespace
 
 DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start,
-                   const std::vector<double>& lines_hz) {
+                   const std::vector<double>& lines_hz, double settled_share) {
   std::vector<WeightedDecay> decay{started({&spectrum, {}, lines_hz}, start)};
-  const bool has_converged = start.empty() || descend(decay, std::ssize(start));
+  const bool has_converged = start.empty() || descend(decay, std::ssize(start), settled_share);
   return described(decay.front().model, decay.front().state, has_converged);
 }
 
@@ -296,7 +299,7 @@ SharedFit fit_shared_poles(const std::vector<SharingDecay>& sharing,
     decays.push_back(started(decay, shared));
   }
   SharedFit fit;
-  const bool has_converged = descend(decays, std::ssize(shared));
+  const bool has_converged = descend(decays, std::ssize(shared), settled_fit);
   for (const WeightedDecay& decay : decays) {
     fit.decays.push_back(described(decay.model, decay.state, has_converged));
   }

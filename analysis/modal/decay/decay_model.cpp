@@ -9,64 +9,101 @@ namespace tapstudy::analysis {
 namespace {
 using Complex = std::complex<double>;
 
-// sum of e^(n u), n = 0 ... N - 1, and its derivative by u. Near u = 0, where the quotient loses
-// its digits, the series.
-struct GeometricSum {
-  Complex value;
-  Complex slope;
-};
-GeometricSum geometric_sum(const Complex& u, const Complex& z_to_length, double length) {
-  if (std::abs(u) * length < 1e-3) {
-    const double first = length * (length - 1.0) / 2.0;
-    const double second = first * (2.0 * length - 1.0) / 3.0;
-    const double third = first * first;
-    return {length + u * (first + u * (second / 2.0 + u * third / 6.0)),
-            first + u * (second + u * third / 2.0)};
-  }
-  const Complex x = std::exp(u);
-  const Complex below = 1.0 - x;
-  const Complex inverse = std::conj(below) / std::norm(below);  // quicker than complex division
-  const Complex value = (1.0 - z_to_length) * inverse;
-  return {value, (value * x - length * z_to_length) * inverse};
-}
+// Sums over n = 0 ... N - 1 of z^n q^n and, times n, of n z^n q^n, at every bin's q; q^N = 1 there.
+// Near z q = 1, where the quotient loses its digits, by the series.
+class GeometricSums {
+ public:
+  GeometricSums(const Complex& log_z, const BandSpectrum& spectrum)
+      : log_z_{log_z},
+        z_{std::exp(log_z)},
+        length_{static_cast<double>(spectrum.length)},
+        z_to_length_{std::exp(log_z * length_)},
+        spectrum_{spectrum} {}
 
-struct Transforms {
-  Eigen::VectorXcd value;
-  Eigen::VectorXcd slope;
-};
-Transforms transforms_of(const Complex& log_z, const BandSpectrum& spectrum) {
-  const Eigen::Index bins = spectrum.values.size();
-  const auto length = static_cast<double>(spectrum.length);
-  const Complex z_to_length = std::exp(log_z * length);  // q^N = 1 at every bin
-  Transforms result{Eigen::VectorXcd(bins), Eigen::VectorXcd(bins)};
-  for (Eigen::Index k = 0; k < bins; ++k) {
-    const GeometricSum sum =
-        geometric_sum(log_z - Complex{0.0, spectrum.rad_per_sample[k]}, z_to_length, length);
-    result.value[k] = sum.value;
-    result.slope[k] = sum.slope;
+  Complex value(Eigen::Index bin) const {
+    const Complex u = exponent(bin);
+    return is_near_one(u) ? value_near_one(u) : quotient(1.0 - z_to_length_, 1.0 - turned(bin));
   }
-  return result;
-}
+  // The derivative of the value by ln z.
+  Complex slope(Eigen::Index bin) const {
+    const Complex u = exponent(bin);
+    if (is_near_one(u)) {
+      return slope_near_one(u);
+    }
+    const Complex x = turned(bin);
+    const Complex value = quotient(1.0 - z_to_length_, 1.0 - x);
+    return quotient(product(value, x) - length_ * z_to_length_, 1.0 - x);
+  }
+
+ private:
+  // The library's product and quotient of complex numbers look for infinities: several times
+  // slower.
+  static Complex product(const Complex& a, const Complex& b) {
+    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+  }
+  static Complex quotient(const Complex& a, const Complex& b) {
+    const double scale = 1.0 / (b.real() * b.real() + b.imag() * b.imag());
+    return {(a.real() * b.real() + a.imag() * b.imag()) * scale,
+            (a.imag() * b.real() - a.real() * b.imag()) * scale};
+  }
+  Complex exponent(Eigen::Index bin) const {
+    return {log_z_.real(), log_z_.imag() - spectrum_.rad_per_sample[bin]};
+  }
+  Complex turned(Eigen::Index bin) const { return product(z_, spectrum_.delay[bin]); }
+  bool is_near_one(const Complex& u) const {
+    constexpr double near = 1e-3;
+    return (u.real() * u.real() + u.imag() * u.imag()) * length_ * length_ < near * near;
+  }
+  Complex value_near_one(const Complex& u) const {
+    const double first = length_ * (length_ - 1.0) / 2.0;
+    const double second = first * (2.0 * length_ - 1.0) / 3.0;
+    return length_ + u * (first + u * (second / 2.0 + u * first * first / 6.0));
+  }
+  Complex slope_near_one(const Complex& u) const {
+    const double first = length_ * (length_ - 1.0) / 2.0;
+    const double second = first * (2.0 * length_ - 1.0) / 3.0;
+    return first + u * (second + u * first * first / 2.0);
+  }
+
+  Complex log_z_;
+  Complex z_;
+  double length_;
+  Complex z_to_length_;
+  const BandSpectrum& spectrum_;
+};
 }  // namespace
 
 CutExponential cut_exponential(const std::complex<double>& log_z, const BandSpectrum& spectrum) {
-  const Transforms of_z = transforms_of(log_z, spectrum);
-  const Transforms of_conjugate = transforms_of(std::conj(log_z), spectrum);
-  return {(of_z.value + of_conjugate.value) / 2.0, (of_z.value - of_conjugate.value) / 2.0};
+  const GeometricSums of_z{log_z, spectrum};
+  const GeometricSums of_conjugate{std::conj(log_z), spectrum};
+  const Eigen::Index bins = spectrum.values.size();
+  CutExponential both{Eigen::VectorXcd(bins), Eigen::VectorXcd(bins)};
+  for (Eigen::Index k = 0; k < bins; ++k) {
+    const Complex one = of_z.value(k);
+    const Complex other = of_conjugate.value(k);
+    both.plus[k] = (one + other) / 2.0;
+    both.minus[k] = (one - other) / 2.0;
+  }
+  return both;
 }
 
 CutExponential cut_exponential_slope(const std::complex<double>& c,
                                      const std::complex<double>& log_z,
                                      const BandSpectrum& spectrum) {
-  const Transforms of_z = transforms_of(log_z, spectrum);
-  const Transforms of_conjugate = transforms_of(std::conj(log_z), spectrum);
-  const Complex conjugate = std::conj(c);
-  return {(c * of_z.slope + conjugate * of_conjugate.slope) / 2.0,
-          (c * of_z.slope - conjugate * of_conjugate.slope) / 2.0};
+  const GeometricSums of_z{log_z, spectrum};
+  const GeometricSums of_conjugate{std::conj(log_z), spectrum};
+  const Eigen::Index bins = spectrum.values.size();
+  CutExponential both{Eigen::VectorXcd(bins), Eigen::VectorXcd(bins)};
+  for (Eigen::Index k = 0; k < bins; ++k) {
+    const Complex one = c * of_z.slope(k);
+    const Complex other = std::conj(c) * of_conjugate.slope(k);
+    both.plus[k] = (one + other) / 2.0;
+    both.minus[k] = (one - other) / 2.0;
+  }
+  return both;
 }
 
 namespace {
-using Complex = std::complex<double>;
 constexpr Eigen::Index smooth_terms = 4;
 constexpr double max_growth = 30.0;
 
@@ -91,7 +128,7 @@ DecayModel::DecayModel(const BandSpectrum& spectrum, Eigen::Index poles,
       poles_{poles},
       length_{static_cast<double>(spectrum.length)},
       data_{stacked(spectrum.values)} {
-  const Eigen::ArrayXcd q = (Complex{0.0, -1.0} * spectrum.rad_per_sample.cast<Complex>()).exp();
+  const Eigen::ArrayXcd& q = spectrum.delay;
   const auto lines = static_cast<Eigen::Index>(lines_hz.size());
   nuisance_ = Eigen::MatrixXd{data_.size(), smooth_terms + 2 * lines};
   nuisance_.col(0) = stacked((1.0 / (1.0 - q)).matrix());

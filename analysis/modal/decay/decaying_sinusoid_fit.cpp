@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <unsupported/Eigen/NonLinearOptimization>
@@ -24,7 +25,8 @@ class SinusoidModel {
   using InputType = Eigen::VectorXd;
   using ValueType = Eigen::VectorXd;
   using JacobianType = Eigen::MatrixXd;
-  explicit SinusoidModel(const Eigen::VectorXd& samples) : samples_{samples} {}
+  explicit SinusoidModel(const Eigen::VectorXd& samples)
+      : samples_{samples}, sum_{samples.sum()}, energy_{samples.squaredNorm()} {}
   int values() const { return static_cast<int>(samples_.size()); }
   static int inputs() { return 5; }
 
@@ -41,15 +43,38 @@ class SinusoidModel {
     jacobian.rightCols(3) = b;
     return 0;
   }
-  // The best cosine, sine and offset for this decay and frequency, and the residual's energy.
+  // The best cosine, sine and offset for this decay and frequency, and the residual's energy, by
+  // the sums of z^n, z^2n, |z|^2n in closed form and that of y z^n by Horner's scheme.
   std::pair<Eigen::Vector3d, double> best_shares(double decay, double omega) const {
-    const Eigen::MatrixXd b = basis(decay, omega);
-    const Eigen::Matrix3d gram = b.transpose() * b;
-    const Eigen::Vector3d shares = gram.ldlt().solve(b.transpose() * samples_);
-    return {shares, (samples_ - b * shares).squaredNorm()};
+    const std::complex<double> log_z{-decay, omega};
+    const std::complex<double> first = sum_of_powers(log_z);
+    const std::complex<double> second = sum_of_powers(2.0 * log_z);
+    const double squares = sum_of_powers(-2.0 * decay).real();
+    const std::complex<double> product = product_with_powers(std::exp(log_z));
+    Eigen::Matrix3d gram;
+    gram << (squares + second.real()) / 2.0, second.imag() / 2.0, first.real(),  //
+        second.imag() / 2.0, (squares - second.real()) / 2.0, first.imag(),      //
+        first.real(), first.imag(), static_cast<double>(samples_.size());
+    const Eigen::Vector3d products{product.real(), product.imag(), sum_};
+    const Eigen::Vector3d shares = gram.ldlt().solve(products);
+    return {shares, energy_ - shares.dot(products)};
   }
 
  private:
+  std::complex<double> sum_of_powers(const std::complex<double>& log_z) const {
+    const auto count = static_cast<double>(samples_.size());
+    return (1.0 - std::exp(count * log_z)) / (1.0 - std::exp(log_z));
+  }
+  std::complex<double> product_with_powers(const std::complex<double>& z) const {
+    double real = 0.0;
+    double imaginary = 0.0;
+    for (Eigen::Index n = samples_.size() - 1; n >= 0; --n) {
+      const double turned = real * z.real() - imaginary * z.imag() + samples_[n];
+      imaginary = real * z.imag() + imaginary * z.real();
+      real = turned;
+    }
+    return {real, imaginary};
+  }
   Eigen::ArrayXd steps() const {
     return Eigen::ArrayXd::LinSpaced(samples_.size(), 0.0,
                                      static_cast<double>(samples_.size() - 1));
@@ -64,6 +89,8 @@ class SinusoidModel {
     return b;
   }
   const Eigen::VectorXd& samples_;
+  double sum_;
+  double energy_;
 };
 
 // Decays from one over the duration to the band's highest frequency times 2 pi.

@@ -96,10 +96,10 @@ BandSpectrum band_spectrum(const FreeDecay& decay, const Band& band) {
   Eigen::FFT<double> transform;
   transform.fwd(spectrum, Eigen::VectorXd{decay.samples.head(length)});
   const Eigen::Index bins = last - first + 1;
-  return {
-      decay.rate_hz, length,
+  const Eigen::ArrayXd rad_per_sample =
       2.0 * pi / static_cast<double>(length) *
-          Eigen::ArrayXd::LinSpaced(bins, static_cast<double>(first), static_cast<double>(last)),
-      spectrum.segment(first, bins)};
+      Eigen::ArrayXd::LinSpaced(bins, static_cast<double>(first), static_cast<double>(last));
+  return {decay.rate_hz, length, rad_per_sample, spectrum.segment(first, bins),
+          (std::complex<double>{0.0, -1.0} * rad_per_sample.cast<std::complex<double>>()).exp()};
 }
 }  // namespace tapstudy::analysis

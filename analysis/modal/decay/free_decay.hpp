@@ -46,6 +46,7 @@ struct BandSpectrum {
   Eigen::Index length{};          // of the part transformed
   Eigen::ArrayXd rad_per_sample;  // ascending
   Eigen::VectorXcd values;
+  Eigen::ArrayXcd delay;  // e^(-j rad_per_sample): of one sample
 };
 // Complex values as real ones, the imaginary parts below the real.
 Eigen::MatrixXd stacked(const Eigen::MatrixXcd& values);

@@ -292,7 +292,7 @@ std::vector<Pole> vector_fitting(const BandSpectrum& spectrum, int pairs) {
   if (4 * pairs + further_terms >= 2 * spectrum.values.size()) {
     throw core::InvalidInput{"a decay is too short for a rational fit of so many modes"};
   }
-  const Eigen::ArrayXcd z = (Complex{0.0, 1.0} * spectrum.rad_per_sample.cast<Complex>()).exp();
+  const Eigen::ArrayXcd z = spectrum.delay.conjugate();
   Poles poles = spread_over(spectrum, pairs);
   std::vector<Pole> found;
   for (int round = 0; round < max_relocations; ++round) {

@@ -199,6 +199,17 @@ std::vector<Pole> shared_poles(const SharedFit& fit, std::size_t shared) {
   return poles;
 }
 
+// Each decay's own poles as all together were fitted: what is fitted next begins near its end.
+std::vector<SharingDecay> begun_with(const SharedFit& fit, std::size_t shared,
+                                     std::vector<SharingDecay> decays) {
+  for (std::size_t i = 0; i < decays.size(); ++i) {
+    for (std::size_t k = 0; k < decays[i].own.size(); ++k) {
+      decays[i].own[k] = fit.decays[i].modes[shared + k].pole;
+    }
+  }
+  return decays;
+}
+
 // The shared poles without each group of impacts in turn, at most max_groups groups; empty if one
 // of them is not what was found with all.
 std::vector<std::vector<Pole>> poles_without(const std::vector<SharingDecay>& decays,
@@ -289,7 +300,8 @@ void resolve(const CloseModes& neighbours, const std::vector<Pole>& poles,
           criterion_of_impacts(found.taps, impacts, neighbours).value()) {
     return;
   }
-  const std::vector<std::vector<Pole>> without = poles_without(decays, impacts, fitted, neighbours);
+  const std::vector<std::vector<Pole>> without =
+      poles_without(begun_with(together, poles.size(), decays), impacts, fitted, neighbours);
   if (without.empty() && std::ranges::count(impacts, impacts.front()) != std::ssize(impacts)) {
     return;
   }

@@ -227,14 +227,16 @@ class Neighbourhood {
     mode.degrees_of_freedom =
         ratios.size() > 1 ? static_cast<double>(ratios.size()) - 1.0 : freedom;
     mode.scatter_p.reset();
-    mode.why = {};
     if (fit.poles.front().terms > 1) {
       mode.at_tap = at_taps(fit);
     }
     mode.taps = static_cast<int>(decays_.size());
     mode.agreed = static_cast<int>(
         std::ranges::count_if(fit.seen, [](const SeenAtTap& seen) { return seen.share > 0.5; }));
-    mode.standing = 2 * mode.agreed >= mode.taps ? Standing::agreed : strongest_.standing;
+    if (2 * mode.agreed >= mode.taps || strongest_.standing == Standing::agreed) {
+      mode.standing = Standing::agreed;
+      mode.why = {};
+    }
     return mode;
   }
 
@@ -329,22 +331,61 @@ double settled_after_s(const std::vector<FreeDecay>& decays, const std::vector<i
   return settled_s;
 }
 
+namespace {
+double bandwidth_hz(const RepeatedMode& mode) {
+  return 2.0 * std::abs(mode.damping_ratio.value) * centre_of(mode);
+}
+
+bool are_near(const RepeatedMode& one, const RepeatedMode& other) {
+  return std::abs(centre_of(one) - centre_of(other)) < bandwidth_hz(one) + bandwidth_hz(other);
+}
+
+void widen(double by, Estimate& estimate) {
+  estimate.standard_error = std::hypot(estimate.standard_error, by / 2.0);
+  estimate.interval.low -= by;
+  estimate.interval.high += by;
+  estimate.bootstrap.reset();
+}
+
+// Where only the blow with its reflections shows a mode, they shift its pole by up to a third of
+// its decay rate.
+RepeatedMode seen_in_blow(RepeatedMode mode) {
+  constexpr double shift = 1.0 / 3.0;
+  widen(shift * bandwidth_hz(mode) / 2.0, mode.frequency_hz);
+  widen(shift * mode.damping_ratio.value, mode.damping_ratio);
+  mode.at_tap.reset();
+  return mode;
+}
+}  // namespace
+
 std::vector<RepeatedMode> died_before(double after_s, const std::vector<RepeatedMode>& first,
                                       const std::vector<RepeatedMode>& later) {
-  constexpr double least_fall = 0.4;  // nepers
-  const auto bandwidth_hz = [](const RepeatedMode& mode) {
-    return 2.0 * std::abs(mode.damping_ratio.value) * centre_of(mode);
-  };
+  constexpr double least_fall = 0.4;         // nepers
+  constexpr double above_reflections = 0.1;  // reflections of the blow make weaker ones
+  double strongest = 0.0;
+  for (const RepeatedMode& mode : first) {
+    strongest = std::max(strongest, mode.standing == Standing::agreed ? mode.amplitude : 0.0);
+  }
   std::vector<RepeatedMode> died;
   std::ranges::copy_if(first, std::back_inserter(died), [&](const RepeatedMode& mode) {
-    return mode.standing == Standing::agreed &&
+    return mode.standing == Standing::agreed && mode.amplitude >= above_reflections * strongest &&
            std::numbers::pi * bandwidth_hz(mode) * after_s > least_fall &&
            std::ranges::none_of(later, [&](const RepeatedMode& other) {
-             return may_be_mode(other) && std::abs(centre_of(other) - centre_of(mode)) <
-                                              bandwidth_hz(mode) + bandwidth_hz(other);
+             return other.standing == Standing::agreed && are_near(mode, other);
            });
   });
+  std::ranges::transform(died, died.begin(), seen_in_blow);
   return died;
+}
+
+void add_died(const std::vector<RepeatedMode>& died, std::vector<RepeatedMode>& later) {
+  std::erase_if(later, [&](const RepeatedMode& left) {
+    return left.standing == Standing::doubtful &&
+           std::ranges::any_of(died,
+                               [&](const RepeatedMode& mode) { return are_near(mode, left); });
+  });
+  later.insert(later.end(), died.begin(), died.end());
+  std::ranges::sort(later, {}, [](const RepeatedMode& mode) { return centre_of(mode); });
 }
 
 std::vector<RepeatedMode> distinct_modes(const std::vector<FreeDecay>& decays,

@@ -20,9 +20,13 @@ double settled_after_s(const std::vector<FreeDecay>& decays, const std::vector<i
                        const Band& band, const ModesOfTaps& found);
 // A blow with its reflections and the striker's touch.
 inline constexpr double blow_s = 0.012;
-// Agreed modes that had died away by then (by a third at least) and are missing among what the
-// later decays show: nothing later lies within their half-power bandwidth and its own.
+// Agreed modes, no more than 20 dB below the strongest, that had died away by then (by a third at
+// least) and are missing among what the
+// later decays show: no agreed mode later lies within their half-power bandwidth and its own. Their
+// intervals are wider by what reflections may do.
 std::vector<RepeatedMode> died_before(double after_s, const std::vector<RepeatedMode>& first,
                                       const std::vector<RepeatedMode>& later);
+// Beside the later ones, instead of what doubtful remainders of them are left there. Ascending.
+void add_died(const std::vector<RepeatedMode>& died, std::vector<RepeatedMode>& later);
 FreeDecay begun_later(const FreeDecay& decay, double after_s);
 }  // namespace tapstudy::analysis

@@ -26,8 +26,19 @@ double width(const Interval& interval) {
   return interval.high - interval.low;
 }
 
+int most_taps_of(const std::vector<RepeatedMode>& modes) {
+  int most = 0;
+  for (const RepeatedMode& mode : modes) {
+    most = is_listed(mode) ? std::max(most, mode.taps) : most;
+  }
+  return most;
+}
+
 // Why a mode is not certain, or empty.
-std::string uncertainty_of(const RepeatedMode& mode) {
+std::string uncertainty_of(const RepeatedMode& mode, int most_taps) {
+  if (mode.taps < least_share_of_taps * most_taps) {
+    return fmt::format("in {} of {} taps only", mode.taps, most_taps);
+  }
   const Interval& ratio = mode.damping_ratio.interval;
   if (!(ratio.low > 0.0)) {
     return fmt::format("its damping ratio is anything from {:.2g} to {:.2g}", ratio.low,
@@ -47,6 +58,7 @@ std::string uncertainty_of(const RepeatedMode& mode) {
 }  // namespace
 
 void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes) {
+  const int most_taps = most_taps_of(modes);
   for (RepeatedMode& mode : modes) {
     if (mode.standing == Standing::line) {
       continue;
@@ -56,7 +68,7 @@ void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes) {
       mode.why = fmt::format("fewer than {:g} periods in a decay", min_periods);
       continue;
     }
-    const std::string uncertain = uncertainty_of(mode);
+    const std::string uncertain = uncertainty_of(mode, most_taps);
     if (is_listed(mode) && !uncertain.empty()) {
       mode.standing = Standing::doubtful;
       mode.why = uncertain;
@@ -113,7 +125,9 @@ void mark_background(const std::vector<FreeDecay>& rests, std::vector<RepeatedMo
 namespace {
 constexpr double combination_tolerance = 0.002;  // of the frequency: a converter's and a fit's
 constexpr double rate_tolerance = 0.3;           // of the decay
+constexpr double outlasting_tolerance = 0.1;     // damping follows amplitude, too
 constexpr double combination_weakness = 0.3;     // about 10 dB
+constexpr double least_of_other_sideband = 0.1;  // of the sideband's amplitude
 constexpr int highest_multiple = 3;
 
 struct Line {
@@ -125,12 +139,21 @@ Line line_of(const RepeatedMode& mode) {
   return {hz(mode), 2.0 * std::numbers::pi * hz(mode) * mode.damping_ratio.value};
 }
 
+bool is_at(double frequency_hz, const RepeatedMode& mode) {
+  return std::abs(frequency_hz - hz(mode)) <=
+         std::max(combination_tolerance * hz(mode), width(mode.frequency_hz.interval) / 2.0);
+}
+
 bool is_made_as(const Line& made, const RepeatedMode& mode) {
-  const double apart_hz = std::abs(made.frequency_hz - hz(mode));
   const double decay_per_s = line_of(mode).decay_per_s;
-  return apart_hz <=
-             std::max(combination_tolerance * hz(mode), width(mode.frequency_hz.interval) / 2.0) &&
+  return is_at(made.frequency_hz, mode) &&
          std::abs(decay_per_s - made.decay_per_s) <= rate_tolerance * made.decay_per_s;
+}
+
+// A product decays by the sum of its factors' rates, so that it does not outlast either.
+bool outlasts(const RepeatedMode& mode, const RepeatedMode& factor) {
+  const double fastest_per_s = 2.0 * std::numbers::pi * hz(mode) * mode.damping_ratio.interval.high;
+  return fastest_per_s < (1.0 - outlasting_tolerance) * line_of(factor).decay_per_s;
 }
 
 // "2 times 45.9 Hz", or empty.
@@ -141,6 +164,17 @@ std::string multiple_of(const RepeatedMode& mode, const Line& line) {
     }
   }
   return {};
+}
+
+// A product of two motions holds their sum and their difference alike: one without the other is a
+// mode that happens to lie there.
+bool has_other_sideband(const RepeatedMode& mode, const Line& carrier,
+                        const std::vector<RepeatedMode>& modes) {
+  const double mirrored_hz = 2.0 * carrier.frequency_hz - hz(mode);
+  return std::ranges::any_of(modes, [&](const RepeatedMode& other) {
+    return other.standing != Standing::line && is_at(mirrored_hz, other) &&
+           other.amplitude >= least_of_other_sideband * mode.amplitude;
+  });
 }
 
 // "45.9 Hz - 6.9 Hz", "45.9 Hz + 2 times 6.9 Hz", or empty.
@@ -159,9 +193,16 @@ std::string sum_of(const RepeatedMode& mode, const Line& a, const Line& b) {
   return {};
 }
 
-std::string made_of(const RepeatedMode& mode, const RepeatedMode& one, const RepeatedMode& other) {
-  return &one == &other ? multiple_of(mode, line_of(one))
-                        : sum_of(mode, line_of(one), line_of(other));
+std::string made_of(const RepeatedMode& mode, const RepeatedMode& one, const RepeatedMode& other,
+                    const std::vector<RepeatedMode>& modes) {
+  if (outlasts(mode, one) || outlasts(mode, other)) {
+    return {};
+  }
+  if (&one == &other) {
+    return multiple_of(mode, line_of(one));
+  }
+  return has_other_sideband(mode, line_of(one), modes) ? sum_of(mode, line_of(one), line_of(other))
+                                                       : std::string{};
 }
 
 std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedMode>& modes,
@@ -178,7 +219,7 @@ std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedM
     for (const RepeatedMode& other : modes) {
       const bool is_strong = is_stronger(other) || (&one != &other && modulates(other));
       if (is_stronger(one) && is_strong) {
-        if (std::string made = made_of(mode, one, other); !made.empty()) {
+        if (std::string made = made_of(mode, one, other, modes); !made.empty()) {
           return made;
         }
       }

@@ -9,8 +9,13 @@ inline constexpr double min_periods = 3.0;
 // The widest interval of a mode's frequency, of the frequency.
 inline constexpr double widest_frequency = 0.1;
 
+// What fewer taps show than this share of those that show the most is certain in none: a mode's
+// nodes are lines, which few places lie on.
+inline constexpr double least_share_of_taps = 1.0 / 3.0;
+
 // What is listed as a mode is certain to be one: agreed ones become doubtful whose damping interval
-// holds 0 or whose frequency interval is wider than widest_frequency, with a reason, and those that
+// holds 0 or whose frequency interval is wider than widest_frequency, with a reason, those that
+// few taps show (least_share_of_taps), and those that
 // are the blow's own pulse as likely: they die away in fewer than min_periods and sooner than a
 // blow is over (blow_s). What makes fewer than min_periods in a decay of this length becomes
 // background (unless it is a line), and so does what grows below the weakest mode's frequency.
@@ -27,7 +32,8 @@ void mark_background(const std::vector<FreeDecay>& rests, std::vector<RepeatedMo
 // contact, an overdriven amplifier), the products of two decaying motions decay by the sum of their
 // rates. What lies at a multiple n f of one stronger mode, or at f ± n g of two, decays at that
 // rate, both within the intervals or combination_tolerance, and is weaker by
-// combination_weakness, is a combination. A slow motion g that modulates a fast one need only be
+// combination_weakness, is a combination, unless it rings longer than what would make it or the
+// other sideband, f ∓ n g, is not seen. A slow motion g that modulates a fast one need only be
 // stronger as a displacement, of which `derivatives` were measured (2: acceleration). Modes in
 // ascending frequency.
 void mark_combinations(std::vector<RepeatedMode>& modes, int derivatives = 0);

@@ -11,9 +11,12 @@
 #include "analysis/modal/decay/decay_band.hpp"
 #include "analysis/modal/decay/decay_model.hpp"
 #include "analysis/modal/modes/distinct_modes.hpp"
+#include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
+constexpr double weak_beside = 0.2;  // 14 dB
+constexpr double remainder_reach = 0.15;
 constexpr double around_bandwidths = 8.0;
 constexpr double around_share = 0.04;
 constexpr double least_bins_around = 24.0;
@@ -33,8 +36,19 @@ bool may_be_part(const RepeatedMode& mode) {
          mode.damping_ratio.value > 0.0;
 }
 
+// What of a strong mode's beginning is no exponential, by reflections of the blow or as it follows
+// its amplitude, is weak, dies away sooner and lies beside it.
+bool is_remainder(const RepeatedMode& part, const RepeatedMode& of) {
+  return part.amplitude < weak_beside * of.amplitude && decay_rate_of(part) > decay_rate_of(of) &&
+         std::abs(frequency_hz_of(part) - frequency_hz_of(of)) <
+             remainder_reach * frequency_hz_of(of);
+}
+
 // What dies away within a blow and its reflections is as wide as they make it.
 bool overlap(const RepeatedMode& a, const RepeatedMode& b) {
+  if (is_remainder(a, b) || is_remainder(b, a)) {
+    return true;
+  }
   const bool is_short = blow_s * std::max(decay_rate_of(a), decay_rate_of(b)) > 1.0;
   return std::abs(frequency_hz_of(a) - frequency_hz_of(b)) <
          (is_short ? 2.0 : 1.0) * (halfwidth_hz(a) + halfwidth_hz(b));
@@ -43,7 +57,7 @@ bool overlap(const RepeatedMode& a, const RepeatedMode& b) {
 bool is_series_or_weak(const RepeatedMode& a, const RepeatedMode& b) {
   const auto [slow, fast] = std::minmax({decay_rate_of(a), decay_rate_of(b)});
   const auto [weak, strong] = std::minmax({a.amplitude, b.amplitude});
-  return fast > series_ratio * slow || weak < weakest_sought * strong;
+  return fast > series_ratio * slow || weak < weak_beside * strong;
 }
 
 // The complex amplitudes of two components in each decay at its first sample, their neighbours
@@ -104,9 +118,54 @@ double assurance(const PairAmplitudes& pair) {
   return size > 0.0 ? std::norm(pair.one.dot(pair.other)) / size : 0.0;
 }
 
-// Of the part of a decay after its first sample, up to a factor that both have.
-double energy_of(const Eigen::VectorXcd& amplitudes, const RepeatedMode& mode) {
-  return amplitudes.squaredNorm() / decay_rate_of(mode);
+std::complex<double> median_ratio(const PairAmplitudes& pair) {
+  std::vector<double> real;
+  std::vector<double> imaginary;
+  for (Eigen::Index i = 0; i < pair.one.size(); ++i) {
+    if (std::abs(pair.one[i]) == 0.0) {
+      continue;
+    }
+    const std::complex<double> ratio = pair.other[i] / pair.one[i];
+    real.push_back(ratio.real());
+    imaginary.push_back(ratio.imag());
+  }
+  return real.empty() ? std::complex<double>{}
+                      : std::complex<double>{quantile(real, 0.5), quantile(imaginary, 0.5)};
+}
+
+// A quarter of the decays may have been struck twice or touched: unless all have one shape, those
+// are left out that are farthest from the median proportion.
+PairAmplitudes without_exceptions(PairAmplitudes pair) {
+  const Eigen::Index exceptions = pair.one.size() / 4;
+  if (exceptions == 0 || assurance(pair) >= one_shape) {
+    return pair;
+  }
+  const std::complex<double> ratio = median_ratio(pair);
+  std::vector<std::pair<double, Eigen::Index>> distances;
+  for (Eigen::Index i = 0; i < pair.one.size(); ++i) {
+    const double size = std::max(std::abs(ratio * pair.one[i]) + std::abs(pair.other[i]), 1e-300);
+    distances.emplace_back(std::abs(pair.other[i] - ratio * pair.one[i]) / size, i);
+  }
+  std::ranges::sort(distances, std::ranges::greater{});
+  for (Eigen::Index n = 0; n < exceptions; ++n) {
+    const Eigen::Index left_out = distances[static_cast<std::size_t>(n)].second;
+    pair.one[left_out] = 0.0;
+    pair.other[left_out] = 0.0;
+  }
+  return pair;
+}
+
+// Whether the first has more energy after the first sample in most decays.
+bool has_more_energy(const PairAmplitudes& pair, const RepeatedMode& one,
+                     const RepeatedMode& other) {
+  Eigen::Index more = 0;
+  for (Eigen::Index i = 0; i < pair.one.size(); ++i) {
+    more += std::norm(pair.one[i]) * decay_rate_of(other) >=
+                    std::norm(pair.other[i]) * decay_rate_of(one)
+                ? 1
+                : 0;
+  }
+  return 2 * more >= pair.one.size();
 }
 
 void join(RepeatedMode& kept, RepeatedMode& part) {
@@ -127,11 +186,11 @@ bool may_be_one(const RepeatedMode& a, const RepeatedMode& b) {
 
 void join_if_one(const std::vector<FreeDecay>& decays, const std::vector<RepeatedMode>& modes,
                  RepeatedMode& a, RepeatedMode& b) {
-  const PairAmplitudes pair = amplitudes(a, b, decays, modes);
+  const PairAmplitudes pair = without_exceptions(amplitudes(a, b, decays, modes));
   if (assurance(pair) < one_shape) {
     return;
   }
-  if (energy_of(pair.one, a) >= energy_of(pair.other, b)) {
+  if (has_more_energy(pair, a, b)) {
     join(a, b);
   } else {
     join(b, a);

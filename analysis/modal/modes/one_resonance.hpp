@@ -9,9 +9,11 @@ namespace tapstudy::analysis {
 // another mode do not, where places or sensors differ.
 //
 // Two components are one resonance if they overlap (half of both half-power bandwidths together
-// exceeds the distance; all of them, where one dies away within blow_s), one dies away series_ratio
-// times as fast as the other or is as weak as what is not sought, and the modal assurance of their
-// amplitudes over all decays is at least one_shape. The one with more energy remains, agreed if
+// exceeds the distance; all of them, where one dies away within blow_s; or one is weak, dies away
+// sooner and lies within 15 %), one dies away series_ratio
+// times as fast as the other or is weaker by 14 dB, and the modal assurance of their
+// amplitudes over all decays, but for a quarter that may have been struck twice, is at least
+// one_shape. The one with more energy in most decays remains, agreed if
 // either was and as many taps show it; the other becomes doubtful, with the reason. Of one tap and
 // one sensor nothing tells them apart. Lines and background stay.
 inline constexpr double series_ratio = 1.6;

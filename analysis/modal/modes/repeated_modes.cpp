@@ -160,6 +160,20 @@ std::optional<double> scatter_p_of(const std::vector<double>& values,
   return chi_squared_p(chi_squared, static_cast<double>(values.size()) - 1.0);
 }
 
+// Taps are as good a witness as orders of a pencil: what most of them show, far above their noise,
+// is a mode even where the pencil does not settle.
+bool most_taps_show(const ModeObservations& group, std::size_t taps) {
+  constexpr std::size_t least_taps = 3;
+  constexpr double far_above_noise = 10.0 * min_significance;
+  const auto shown =
+      static_cast<std::size_t>(std::ranges::count_if(group, [](const ModeObservation& one) {
+        return one.mode->by_rational_fit && one.mode->standing != Standing::line &&
+               one.mode->fitted.pole.damping_ratio > 0.0 &&
+               one.mode->fitted.significance >= far_above_noise;
+      }));
+  return shown >= least_taps && 3 * shown >= 2 * taps;
+}
+
 RepeatedMode summary_of(const ModeObservations& group, std::size_t taps,
                         const std::vector<int>& impacts) {
   const ModeObservations agreed = of_standing(group, Standing::agreed);
@@ -175,6 +189,9 @@ RepeatedMode summary_of(const ModeObservations& group, std::size_t taps,
   } else if (2 * agreed.size() >= group.size() && agreed.size() >= std::min<std::size_t>(2, taps)) {
     mode.standing = Standing::agreed;
     shown = &agreed;
+  } else if (most_taps_show(group, taps)) {
+    mode.standing = Standing::agreed;
+    mode.agreed = mode.taps;
   } else {
     const ModeObservations doubtful = of_standing(group, Standing::doubtful);
     mode.why = doubtful.empty() ? "in one tap only" : doubtful.front().mode->why;

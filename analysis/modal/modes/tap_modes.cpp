@@ -20,7 +20,8 @@ constexpr double steady_fall = 0.15;
 constexpr double plain_fall = 0.5;
 constexpr double min_decay_z = 2.0;
 constexpr double min_slow_decay_z = 4.0;
-constexpr double neighbourhood = 0.1;  // of the frequency
+constexpr double rough_chi_squared = 0.01;  // a step's, below which a fit shows what is weak
+constexpr double neighbourhood = 0.1;       // of the frequency
 constexpr double same_line = 0.01;
 constexpr int further_pairs = 4;
 constexpr double mains_tolerance = 0.004;
@@ -84,15 +85,19 @@ std::vector<Pole> poles_of(const std::vector<Candidate>& candidates) {
   return poles;
 }
 
-// Fits, drops what is weak, and again, until all are significant.
+// Fits, drops what is weak, and again, until all are significant. What is weak shows long before a
+// fit has settled to the last digit.
 DecayFit fit_significant(const BandSpectrum& spectrum, const Band& band,
                          const std::vector<double>& lines_hz, std::vector<Candidate>& candidates) {
+  const double rough_share = rough_chi_squared / static_cast<double>(2 * spectrum.values.size());
+  double settled_share = rough_share;
   for (;;) {
-    DecayFit fit = fit_decay(spectrum, poles_of(candidates), lines_hz);
+    DecayFit fit = fit_decay(spectrum, poles_of(candidates), lines_hz, settled_share);
     const std::vector<std::size_t> drop = insignificant(fit.modes, band);
-    if (drop.empty()) {
+    if (drop.empty() && settled_share == settled_fit) {
       return fit;
     }
+    settled_share = drop.empty() ? settled_fit : rough_share;
     std::vector<Candidate> kept;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       if (std::ranges::find(drop, i) == drop.end()) {

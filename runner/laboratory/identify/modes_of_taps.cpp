@@ -19,7 +19,6 @@ namespace {
 constexpr double default_low_hz = 10.0;
 constexpr double sinusoid_high_hz = 1000.0;
 constexpr double least_high_hz = 100.0;
-constexpr double most_high_hz = 2000.0;  // twice what is felt; what lies above is told
 constexpr double above_highest_peak = 1.25;
 constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
 constexpr double max_rate_share = 0.47;
@@ -43,8 +42,8 @@ analysis::Band band_sought(const TapQuestion& question,
   }
   const double follows_hz = std::max(
       least_high_hz, above_highest_peak * analysis::highest_peak_hz(decays, default_low_hz));
-  return {default_low_hz, std::min({usable_rate_share * rate_hz, follows_hz,
-                                    band_limit_hz.value_or(most_high_hz)})};
+  const double usable_hz = usable_rate_share * rate_hz;
+  return {default_low_hz, std::min({usable_hz, follows_hz, band_limit_hz.value_or(usable_hz)})};
 }
 }  // namespace
 
@@ -209,7 +208,8 @@ std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
       analysis::settled_after_s(decays_of(taps), impacts_of(taps), band, found);
   std::vector<analysis::RepeatedMode> died;
   if (settled_s > 0.0) {
-    const std::vector<analysis::RepeatedMode> first = found.modes;
+    const std::vector<analysis::RepeatedMode> first =
+        analysis::distinct_modes(decays_of(taps), impacts_of(taps), band, found);
     begin_later(settled_s, taps, remarks);
     found = found_in_parts(band, taps, remarks);
     if (taps.empty()) {
@@ -220,8 +220,7 @@ std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
   std::vector<analysis::RepeatedMode> modes =
       analysis::distinct_modes(decays_of(taps), impacts_of(taps), band, found);
   analysis::join_resonances(decays_of(taps), modes);
-  modes.insert(modes.end(), died.begin(), died.end());
-  std::ranges::sort(modes, {}, [](const auto& mode) { return mode.frequency_hz.value; });
+  analysis::add_died(died, modes);
   std::vector<analysis::FreeDecay> rests;
   std::ranges::transform(taps, std::back_inserter(rests), &IdentifiedTap::rest);
   analysis::mark_background(rests, modes);

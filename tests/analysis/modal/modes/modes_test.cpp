@@ -89,6 +89,23 @@ TEST_CASE("what channels say of one impact is one observation", "[analysis][moda
   CHECK(modes_over_taps(two_channels).at(0).frequency_hz.interval.low > two.interval.low);
 }
 
+TEST_CASE("what most taps show far above their noise is a mode, even by one method",
+          "[analysis][modal]") {
+  std::vector<TapModes> taps;
+  for (const double frequency_hz : {100.0, 100.2, 99.9, 100.1}) {
+    taps.push_back(tap_of(frequency_hz, 0.01));
+    TapMode& mode = taps.back().modes.front();
+    mode.standing = Standing::doubtful;
+    mode.by_rational_fit = mode.fitted.pole;
+    mode.fitted.significance = 2000.0;
+  }
+  CHECK(modes_over_taps(taps).at(0).standing == Standing::agreed);
+  for (TapModes& tap : taps) {
+    tap.modes.front().fitted.significance = 2.0 * min_significance;
+  }
+  CHECK(modes_over_taps(taps).at(0).standing == Standing::doubtful);
+}
+
 TEST_CASE("taps that differ as their errors say do not scatter, however unequal the errors",
           "[analysis][modal]") {
   const std::vector<double> errors_hz{0.01, 0.01, 0.01, 0.03, 0.03, 0.03, 0.1, 0.1};
@@ -457,19 +474,58 @@ TEST_CASE("products of two motions are marked by their frequency and by their de
   CHECK(modes[5].standing == Standing::agreed);  // as strong as what would make it
 }
 
+namespace {
+// A motion at 80 Hz, one at 1500 Hz and both sidebands, which decay so many times as fast as a
+// product.
+std::vector<RepeatedMode> modulated(double factor) {
+  const auto sideband = [&](double hz) {
+    return certain_mode(hz, factor * 0.002 * (1500.0 + 80.0) / hz, 0.1);
+  };
+  return {certain_mode(80.0, 0.002, 0.1), sideband(1420.0), certain_mode(1500.0, 0.002, 1.0),
+          sideband(1580.0)};
+}
+}  // namespace
+
 TEST_CASE("a slow motion that is weak only as an acceleration modulates a fast one",
           "[analysis][modal]") {
-  const double product_hz = 1500.0 + 80.0;
-  const std::vector<RepeatedMode> modes{
-      certain_mode(80.0, 0.002, 0.1), certain_mode(1500.0, 0.002, 1.0),
-      certain_mode(product_hz, 0.002 * (1500.0 + 80.0) / product_hz, 0.1)};
+  const std::vector<RepeatedMode> modes = modulated(1.0);
   std::vector<RepeatedMode> as_displacement = modes;
   mark_combinations(as_displacement, 0);
-  CHECK(as_displacement[2].standing == Standing::agreed);
+  CHECK(as_displacement[1].standing == Standing::agreed);
   std::vector<RepeatedMode> as_acceleration = modes;  // 390 times as strong a displacement
   mark_combinations(as_acceleration, 2);
-  CHECK(as_acceleration[2].standing == Standing::combination);
-  CHECK(as_acceleration[1].standing == Standing::agreed);
+  CHECK(as_acceleration[1].standing == Standing::combination);
+  CHECK(as_acceleration[2].standing == Standing::agreed);
+  CHECK(as_acceleration[3].standing == Standing::combination);
+}
+
+TEST_CASE("a mode where a sideband would be is a mode if its mirror image is missing",
+          "[analysis][modal]") {
+  std::vector<RepeatedMode> modes = modulated(1.0);
+  modes.pop_back();
+  mark_combinations(modes, 2);
+  CHECK(modes[1].standing == Standing::agreed);
+}
+
+TEST_CASE("what rings longer than the motions that would make it is no product of theirs",
+          "[analysis][modal]") {
+  std::vector<RepeatedMode> modes = modulated(0.75);
+  mark_combinations(modes, 2);
+  CHECK(modes[1].standing == Standing::agreed);
+  CHECK(modes[3].standing == Standing::agreed);
+}
+
+TEST_CASE("what fewer than a third of the taps show is doubtful, weak modes of many are not",
+          "[analysis][modal]") {
+  std::vector<RepeatedMode> modes{certain_mode(300.0, 0.01, 1.0), certain_mode(700.0, 0.01, 0.5),
+                                  certain_mode(900.0, 0.01, 0.01)};
+  modes[0].taps = 12;
+  modes[1].taps = 3;
+  modes[2].taps = 4;
+  judge_certainty(0.5, modes);
+  CHECK(modes[1].standing == Standing::doubtful);
+  CHECK_THAT(modes[1].why, Contains("3 of 12 taps"));
+  CHECK(modes[2].standing == Standing::agreed);
 }
 
 namespace {
@@ -500,6 +556,17 @@ TEST_CASE("what overlaps a mode, dies away sooner and follows its amplitude is a
   CHECK_THAT(modes[1].why, Contains("300 Hz"));
 }
 
+TEST_CASE("what follows a mode in most taps is a part of it, whatever two taps struck twice show",
+          "[analysis][modal]") {
+  std::vector<Shares> shares = in_proportion;
+  shares.insert(shares.end(), in_proportion.begin(), in_proportion.end());
+  shares[2] = {1.5, -1.7};
+  shares[5] = {1.2, -1.3};
+  const std::vector<RepeatedMode> modes = joined_from(shares, 0.014);
+  CHECK(modes[0].standing == Standing::agreed);  // the stronger one in the other taps
+  CHECK(modes[1].standing == Standing::doubtful);
+}
+
 TEST_CASE("overlapping modes stay two where places or sensors see them in other proportions",
           "[analysis][modal]") {
   const std::vector<RepeatedMode> modes =
@@ -524,6 +591,24 @@ TEST_CASE("a mode that has died away when later decays begin is kept", "[analysi
   REQUIRE(died.size() == 1);  // 310 Hz overlaps what is seen later, 300 Hz is that
   CHECK(died.front().frequency_hz.value == 900.0);
   CHECK(died_before(0.001, first, later).empty());
+}
+
+TEST_CASE("what only the blow shows is a mode if reflections cannot be it, known less well",
+          "[analysis][modal]") {
+  const std::vector<RepeatedMode> first{certain_mode(300.0, 0.004, 1.0),
+                                        certain_mode(900.0, 0.02, 0.5),
+                                        certain_mode(1200.0, 0.02, 0.04)};
+  RepeatedMode remainder = certain_mode(905.0, 0.02, 0.01);
+  remainder.standing = Standing::doubtful;
+  std::vector<RepeatedMode> later{first[0], remainder};
+  const std::vector<RepeatedMode> died = died_before(0.012, first, later);
+  REQUIRE(died.size() == 1);
+  CHECK(died[0].frequency_hz.value == first[1].frequency_hz.value);
+  CHECK(died[0].frequency_hz.interval.high >= 900.0 + 900.0 * 0.02 / 3.0);
+  CHECK(died[0].damping_ratio.interval.low <= 0.02 * 2.0 / 3.0);
+  add_died(died, later);
+  REQUIRE(later.size() == 2);
+  CHECK(later[1].standing == Standing::agreed);
 }
 
 TEST_CASE("what is over in three periods and within a blow is as likely the blow's pulse",

@@ -15,6 +15,7 @@
 #include "runner/session/devices/device_kind.hpp"
 #include "runner/session/devices/masking_card.hpp"
 #include "runner/session/devices/rigs.hpp"
+#include "runner/session/engine/open_study.hpp"
 #include "runner/session/engine/remaining_trials.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/engine/stored_names.hpp"
@@ -275,8 +276,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
   Markers markers{live.rig.markers};
   std::unique_ptr<device::PcmSink> card = open_masking_card(live.protocol, live.rig);
-  results::Store store =
-      results::Store::open_or_create(live.directory, study_row(live.protocol, live.protocol_file));
+  results::Store store = open_study(live.directory, live.protocol, live.protocol_file);
   check_names(store, live.protocol);
   BegunSession session = begin_session(
       request_of(live), live.protocol, live.rig,

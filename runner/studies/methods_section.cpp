@@ -19,6 +19,7 @@
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "runner/session/devices/masking_card.hpp"
+#include "runner/session/engine/open_study.hpp"
 #include "runner/studies/counted.hpp"
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
@@ -386,6 +387,30 @@ CitingText describe_groups(const std::vector<GroupMembers>& groups,
                     : fmt::format("; the operator chose the group of {} of them", given.size()));
 }
 
+// "" where all sessions had the study's texts.
+std::string changed_texts(const Protocol& protocol,
+                          const std::vector<results::SessionRow>& sessions) {
+  std::map<std::string, std::vector<std::int64_t>> sessions_of;  // by text
+  for (const results::SessionRow& session : sessions) {
+    if (session.protocol_text) {
+      sessions_of[*session.protocol_text].push_back(session.id);
+    }
+  }
+  std::string words;
+  for (const auto& [text, ids] : sessions_of) {
+    std::vector<std::string> changes;
+    std::ranges::transform(changes_in(protocol, text).texts, std::back_inserter(changes),
+                           [](const protocols::ChangedText& one) { return described(one); });
+    if (!changes.empty()) {
+      words += fmt::format(
+          "In {} of {} sessions (the first is session {}) texts were not those of "
+          "the study's beginning: {}. ",
+          ids.size(), sessions.size(), ids.front(), fmt::join(changes, "; "));
+    }
+  }
+  return words;
+}
+
 // Blocks that no participant started.
 std::string unstarted_blocks(const Protocol& protocol, const DoneBlocks& done) {
   std::vector<std::string> names;
@@ -417,6 +442,7 @@ core::CitingText describe_procedure(const Protocol& protocol,
   text += describe_groups(groups, sessions);
   text +=
       describe_sequence(protocol, is_by_all ? "Each participant" : "Participants", blocks, groups);
+  text += changed_texts(protocol, sessions);
   text += unstarted_blocks(protocol, done);
   text += explorations(protocol, done);
   if (are_people) {

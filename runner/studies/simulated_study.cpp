@@ -23,6 +23,7 @@
 #include "results/store/recorder.hpp"
 #include "results/store/store.hpp"
 #include "runner/session/devices/rigs.hpp"
+#include "runner/session/engine/open_study.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/engine/trial_engine.hpp"
 #include "runner/session/participants/simulated_participant.hpp"
@@ -157,8 +158,7 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   const device::LoopSettings settings = loop_settings(protocol, rig);
   models.build_all(protocol);
   const bool is_new = !results::Store::has_database(study.directory);
-  results::Store store =
-      results::Store::open_or_create(study.directory, study_row(protocol, study.protocol_file));
+  results::Store store = open_study(study.directory, protocol, study.protocol_file);
   std::vector<PlannedSession> sessions;
   store.in_one_transaction([&] { sessions = add_sessions(study, protocol, rig, store); });
   if (is_new) {

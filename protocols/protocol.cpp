@@ -27,6 +27,11 @@ const Stimulus& Protocol::stimulus(const std::string& name) const {
 const Block& Protocol::block(const std::string& name) const {
   return named(blocks, name, "block");
 }
+const PlannedSession* Protocol::find_session(const std::string& name) const {
+  const auto found = std::ranges::find(sessions, name, &PlannedSession::name);
+  return found == sessions.end() ? nullptr : &*found;
+}
+
 const Group& Protocol::group(const std::string& name) const {
   return named(groups, name, "group");
 }

@@ -189,6 +189,8 @@ inline constexpr std::size_t max_stimuli = 26;  // of a block: they have letters
 
 struct Block {
   std::string name;
+  std::string session;  // of the protocol's sessions; empty: it has none
+  std::string measure;  // its name in the file, to which sessions that share it add theirs
   const Task* task{};
   std::string question;
   std::vector<std::string> stimuli;
@@ -251,6 +253,15 @@ struct Group {
   std::vector<std::string> blocks;  // in the file's order
 };
 
+// One of the times that a participant comes, on another day, say.
+struct PlannedSession {
+  std::string name;
+  std::vector<std::string> blocks{};  // in the file's order
+  // Since the session before began.
+  std::optional<double> min_since_last_s{};
+  std::optional<double> max_since_last_s{};
+};
+
 // A pre-registered hypothesis; reports treat only these as planned tests.
 struct Hypothesis {
   std::string name;
@@ -294,6 +305,7 @@ struct Protocol {
   Display display;
   std::vector<Block> blocks;  // in the file's order
   BlockOrder block_order;
+  std::vector<PlannedSession> sessions;    // in order, two or more; none: a participant comes once
   std::vector<Group> groups;               // two or more; none: every participant does all blocks
   std::uint64_t counterbalancing_seed{1};  // which participant gets which balanced order
   std::vector<Hypothesis> hypotheses;
@@ -305,5 +317,7 @@ struct Protocol {
   const Block& block(const std::string& name) const;
   const Block* find_block(const std::string& name) const;  // nullptr if there is none
   const Group& group(const std::string& name) const;
+  // nullptr if there is none.
+  const PlannedSession* find_session(const std::string& name) const;
 };
 }  // namespace tapstudy::protocols

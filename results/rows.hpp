@@ -61,7 +61,9 @@ struct SessionRow {
   std::string git_hash;
   std::string compiler;
   std::string started_utc;
-  std::optional<GroupRow> group{};  // unset: the protocol has no groups
+  std::optional<GroupRow> group{};               // unset: the protocol has no groups
+  std::optional<std::string> planned_session{};  // of the protocol's; unset: it has none
+  std::optional<std::string> protocol_text{};    // unset: the study's; else with other texts
 };
 
 // Values of a stimulus on the axes along which it varies, by axis.

@@ -246,6 +246,7 @@ void read_keys_of_task(MapReader& reader, const Protocol& protocol, Block& block
 Block read_block(MapReader& reader, const Protocol& protocol) {
   Block block;
   block.name = reader.name({"name", "unique among the blocks"});
+  block.measure = block.name;
   block.task = find_task(reader.word(
       {"task",
        "identification: which plate is this; choice: switch among blind labels, then choose; "

@@ -51,6 +51,7 @@ void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file,
   read_forms(top, protocol);
   read_display(top, protocol);
   read_blocks(top, protocol);
+  read_planned_sessions(top, protocol);
   read_block_order(top, protocol);
   read_groups(top, protocol);
   read_hypotheses(top, protocol);

@@ -37,6 +37,8 @@ std::vector<std::string> read_form_names(MapReader& reader, const Key& key,
 std::optional<AnswerCondition> read_presented_if(MapReader& block_reader, const Protocol& protocol);
 void read_display(MapReader& top, Protocol& protocol);
 void read_blocks(MapReader& top, Protocol& protocol);
+// Makes a block for each session of one that is in several.
+void read_planned_sessions(MapReader& top, Protocol& protocol);
 void read_block_order(MapReader& top, Protocol& protocol);
 void read_groups(MapReader& top, Protocol& protocol);
 // Of a block: what a participant reads and is asked besides the trials' question.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -22,13 +23,27 @@ bool may_move(const Protocol& protocol, const Block& block) {
          (named.empty() || std::ranges::find(named, block.name) != named.end());
 }
 
-// Each of the group's with the practice before it.
-std::vector<Unit> with_practice_before(const Protocol& protocol, const Group* group) {
+// A group's blocks in one of the sessions; where there are none of these, its name is empty.
+struct Part {
+  const Group* group{};
+  std::string session;
+};
+
+std::vector<Part> parts_of(const Protocol& protocol, const Group* group) {
+  std::vector<Part> parts;
+  for (const PlannedSession& session : protocol.sessions) {
+    parts.push_back({group, session.name});
+  }
+  return parts.empty() ? std::vector<Part>{{group, ""}} : parts;
+}
+
+// Each of the part's with the practice before it.
+std::vector<Unit> with_practice_before(const Protocol& protocol, const Part& part) {
   std::vector<Unit> units;
   bool is_new = true;
   for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
     const Block& block = protocol.blocks[i];
-    if (!does(group, block)) {
+    if (!does(part.group, block) || block.session != part.session) {
       continue;
     }
     if (is_new || block.is_fixed) {
@@ -45,8 +60,8 @@ bool moves(const Protocol& protocol, const Unit& unit) {
   return may_move(protocol, protocol.blocks[unit.back()]);
 }
 
-std::vector<Unit> units_of(const Protocol& protocol, const Group* group) {
-  std::vector<Unit> units = with_practice_before(protocol, group);
+std::vector<Unit> units_of(const Protocol& protocol, const Part& part) {
+  std::vector<Unit> units = with_practice_before(protocol, part);
   const bool has_each_its_own = std::ranges::all_of(
       units, [&](const Unit& unit) { return !moves(protocol, unit) || unit.size() > 1; });
   if (!units.empty() && units.front().size() > 1 && !has_each_its_own) {
@@ -69,11 +84,16 @@ std::vector<std::size_t> moving(const Protocol& protocol, const std::vector<Unit
   return found;
 }
 
-// The index is that within the participant's group.
-void reorder(const Protocol& protocol, std::uint64_t participant_seed, int index,
+// Whose order it is: the index is that within the participant's group.
+struct Whose {
+  std::uint64_t seed{};
+  int index{};
+};
+
+void reorder(const Protocol& protocol, const Whose& whose, std::uint64_t session,
              std::vector<std::size_t>& places) {
   if (protocol.block_order.order == Order::shuffle) {
-    core::Rng rng{core::derived_seed(participant_seed, core::Purpose::block_order)};
+    core::Rng rng{core::derived_seed(whose.seed, core::Purpose::block_order, session)};
     rng.shuffle(places);
     return;
   }
@@ -84,7 +104,8 @@ void reorder(const Protocol& protocol, std::uint64_t participant_seed, int index
   const std::uint64_t seed =
       core::derived_seed(protocol.counterbalancing_seed, core::Purpose::block_order);
   const std::vector<std::size_t> listed = places;
-  const std::vector<int> row = williams_row(n, balanced_sequence(williams_rows(n), {index, seed}));
+  const std::vector<int> row =
+      williams_row(n, balanced_sequence(williams_rows(n), {whose.index, seed}));
   std::ranges::transform(row, places.begin(),
                          [&](int i) { return listed[static_cast<std::size_t>(i)]; });
 }
@@ -92,30 +113,48 @@ void reorder(const Protocol& protocol, std::uint64_t participant_seed, int index
 
 std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t participant_seed,
                                         int order_index) {
-  const std::vector<Unit> units = units_of(protocol, group_of(protocol, order_index));
-  std::vector<const Unit*> ordered;
-  std::ranges::transform(units, std::back_inserter(ordered),
-                         [](const Unit& unit) { return &unit; });
-  if (protocol.block_order.order != Order::listed) {
-    const std::vector<std::size_t> places = moving(protocol, units);
-    std::vector<std::size_t> drawn = places;
-    reorder(protocol, participant_seed, index_in_group(protocol, order_index), drawn);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      ordered[places[i]] = &units[drawn[i]];
-    }
-  }
   std::vector<std::size_t> sequence;
-  for (const Unit* unit : ordered) {
-    sequence.insert(sequence.end(), unit->begin(), unit->end());
+  const Whose whose{participant_seed, index_in_group(protocol, order_index)};
+  std::uint64_t session = 0;
+  for (const Part& part : parts_of(protocol, group_of(protocol, order_index))) {
+    const std::vector<Unit> units = units_of(protocol, part);
+    std::vector<const Unit*> ordered;
+    std::ranges::transform(units, std::back_inserter(ordered),
+                           [](const Unit& unit) { return &unit; });
+    if (protocol.block_order.order != Order::listed) {
+      const std::vector<std::size_t> places = moving(protocol, units);
+      std::vector<std::size_t> drawn = places;
+      reorder(protocol, whose, session, drawn);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        ordered[places[i]] = &units[drawn[i]];
+      }
+    }
+    for (const Unit* unit : ordered) {
+      sequence.insert(sequence.end(), unit->begin(), unit->end());
+    }
+    ++session;
   }
   return sequence;
 }
 
 int balanced_block_orders(const Protocol& protocol, const Group* group) {
-  const std::size_t places = moving(protocol, units_of(protocol, group)).size();
-  return protocol.block_order.order == Order::williams && places > 1
-             ? williams_rows(static_cast<int>(places))
-             : 1;
+  int orders = 1;
+  for (const Part& part : parts_of(protocol, group)) {
+    const std::size_t places = moving(protocol, units_of(protocol, part)).size();
+    if (protocol.block_order.order == Order::williams && places > 1) {
+      orders = std::lcm(orders, williams_rows(static_cast<int>(places)));
+    }
+  }
+  return orders;
+}
+
+Schedule trials_of_session(const Schedule& schedule, const Protocol& protocol,
+                           const std::string& session) {
+  Schedule part;
+  std::ranges::copy_if(schedule, std::back_inserter(part), [&](const PlannedTrial& trial) {
+    return protocol.block(trial.block).session == session;
+  });
+  return part;
 }
 
 int planned_trials(const Block& block) {

@@ -19,6 +19,11 @@ Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed,
 Schedule make_schedule(const Protocol& protocol, std::uint64_t participant_seed, int order_index,
                        const std::string& planned_order);
 
+// The trials of one of the protocol's sessions. Their numbers are those of the participant's whole
+// order.
+Schedule trials_of_session(const Schedule& schedule, const Protocol& protocol,
+                           const std::string& session);
+
 // How many trials a participant has of it.
 int planned_trials(const Block& block);
 
@@ -30,9 +35,8 @@ Draw draw_of(std::uint64_t counterbalancing_seed, std::size_t block_index,
 // One line a trial, for the store and for people.
 std::string described(const Schedule& schedule);
 
-// The order in which one participant does the blocks of the protocol, or of the group: their places
-// in the protocol's list. Seed and
-// index as for make_schedule.
+// The order in which one participant does the blocks of the protocol, or of the group, session by
+// session: their places in the protocol's list. Seed and index as for make_schedule.
 std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t participant_seed,
                                         int order_index);
 

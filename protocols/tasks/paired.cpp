@@ -27,6 +27,7 @@ class Paired final : public PreferenceTask {
                                    "paired only: a third answer, that there is no difference, and "
                                    "its label; stored as `tie`; unset: one of the two is chosen"},
                                   "");
+    reader.is_in_data("tie");
     if (!block.tie.empty() && std::ranges::find(block.stimuli, tie) != block.stimuli.end()) {
       reader.reject("tie", "is how this answer is stored: no stimulus can be called so");
     }

@@ -15,12 +15,18 @@
 #include "protocols/yaml/key.hpp"
 #include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
+// What of a text for people is in the data: nothing; which text it is in the first language, by
+// which it is stored; that there is one, which allows an answer.
+enum class InData { nothing, first_text, presence };
+
 // Texts for participants, which a file may give in several languages: {en: Which plate?, ja: …}.
 // Languages are two letters (ISO 639-1).
 struct Translations {
   std::string language{};  // that is wanted; where a text lacks it, the first that is given
   // By key path, of every text that was read; empty where it is given once for all languages.
   std::map<std::string, std::vector<std::string>> given{};
+  // By key path, of every text for people that the file has: what of it is in the data, too.
+  std::map<std::string, InData> texts{};
 };
 // The key paths of those that are given in some languages, but not in this one.
 std::vector<std::string> texts_without(const std::string& language,
@@ -107,6 +113,8 @@ class MapReader {
   // A mapping from free names to such texts.
   void each_translated(const Key& key, Presence presence,
                        const std::function<void(const std::string&, const std::string&)>& take);
+  // That the text is given at all is a matter of the data.
+  void is_in_data(const std::string& key);
   // Of a text that this key stands for: the wanted language if it is given, else the first.
   std::string language_among(const std::string& key, const std::vector<std::string>& given);
   // A name that is valid in data, tables and file names: see is_name.

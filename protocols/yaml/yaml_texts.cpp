@@ -56,6 +56,9 @@ std::string MapReader::any_text(const Key& key, const std::optional<std::string>
   if (!node) {
     return otherwise.value_or("");
   }
+  if (lines == TextLines::several && languages == TextLanguages::one && translations_ != nullptr) {
+    translations_->texts[path_of(key.name)] = InData::nothing;
+  }
   return languages == TextLanguages::one ? text_at(*node, path_of(key.name), lines)
                                          : translation_at(*node, path_of(key.name), lines);
 }
@@ -110,6 +113,7 @@ std::string MapReader::translation_at(const YAML::Node& node, const std::string&
   if (translations_ == nullptr) {
     return texts.front().second;
   }
+  translations_->texts[path] = InData::nothing;
   std::vector<std::string>& given = translations_->given[path];
   for (const auto& [language, text] : texts) {
     if (!language.empty()) {
@@ -119,6 +123,12 @@ std::string MapReader::translation_at(const YAML::Node& node, const std::string&
   const auto wanted =
       std::ranges::find(texts, translations_->language, &decltype(texts)::value_type::first);
   return (wanted == texts.end() ? texts.front() : *wanted).second;
+}
+
+void MapReader::is_in_data(const std::string& key) {
+  if (pass_ == nullptr && translations_ != nullptr && has(key)) {
+    translations_->texts[path_of(key)] = InData::presence;
+  }
 }
 
 std::string MapReader::language_among(const std::string& key,
@@ -155,6 +165,9 @@ std::vector<std::pair<std::string, std::string>> MapReader::translated_list(cons
       reject_at(item, path, fmt::format("'{}' is listed twice", name));
     } else {
       all.emplace_back(name, translation_at(item, path, TextLines::one));
+      if (translations_ != nullptr) {
+        translations_->texts[path] = InData::first_text;
+      }
     }
   }
   return all;

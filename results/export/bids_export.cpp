@@ -73,17 +73,29 @@ std::vector<std::string> texts(Store& store, const std::string& select) {
   return found;
 }
 
-// Sessions are named only if somebody had several.
+// Sessions are named only if somebody had several: as the protocol calls them, with an x and a
+// number where one was gone on with, or else by their numbers.
 std::map<std::int64_t, std::string> session_labels(Store& store) {
+  const std::vector<SessionRow> sessions = store.sessions();
+  std::vector<std::string> planned;
+  for (const SessionRow& session : sessions) {
+    if (session.planned_session &&
+        std::ranges::find(planned, *session.planned_session) == planned.end()) {
+      planned.push_back(*session.planned_session);
+    }
+  }
+  const BidsLabels names = bids_labels(planned, "s");
   std::map<std::int64_t, std::string> labels;
-  bool is_needed = false;
-  store.each_row(
-      "SELECT session_id, row_number() OVER (PARTITION BY participant_id ORDER BY session_id) "
-      "FROM session",
-      [&](Statement& row) {
-        labels[row.integer(0)] = fmt::format("ses-{:02}", row.integer(1));
-        is_needed = is_needed || row.integer(1) > 1;
-      });
+  std::map<std::pair<std::string, std::string>, int> count;
+  bool is_needed = !planned.empty();
+  for (const SessionRow& session : sessions) {
+    const std::string name = session.planned_session.value_or("");
+    const int number = ++count[{session.participant_id, name}];
+    is_needed = is_needed || number > 1;
+    labels[session.id] = name.empty() ? fmt::format("ses-{:02}", number)
+                         : number > 1 ? fmt::format("ses-{}x{}", names.by_name.at(name), number)
+                                      : fmt::format("ses-{}", names.by_name.at(name));
+  }
   if (!is_needed) {
     std::ranges::for_each(labels, [](auto& label) { label.second.clear(); });
   }

@@ -15,7 +15,8 @@ struct Source {
 };
 
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage): joined to literals
-#define WHO "session_id participant_id group_name mode is_excluded exclusion_reason "
+#define WHO \
+  "session_id participant_id group_name planned_session mode is_excluded exclusion_reason "
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage)
 #define WHICH_TRIAL \
   "trial_id " WHO "block task number attempt is_practice is_catch presented status "
@@ -24,7 +25,8 @@ constexpr std::array sources{
     Source{"sessions", "One row per session.",
            WHO "group_assignment participant_index order_index resumes started_utc language "
                "rate_hz device "
-               "scheduler program_version git_hash compiler seed planned_order rig_text doctor",
+               "scheduler program_version git_hash compiler seed planned_order rig_text "
+               "protocol_text doctor",
            "v_sessions ORDER BY session_id"},
     Source{"trials", "One row per presentation of a trial.",
            WHICH_TRIAL
@@ -109,12 +111,17 @@ std::string quoted(const std::string& text) {
   return literal + "'";
 }
 
-// Without those of groups where nobody is in one.
+// Without those of groups where nobody is in one; likewise of planned sessions and changed texts.
 std::vector<Column> columns_of(Store& store, const char* names) {
   std::vector<Column> columns = known_columns(names);
-  if (!store.has_groups()) {
-    std::erase_if(columns, [](const Column& column) { return column.name.starts_with("group_"); });
-  }
+  const auto leave_out = [&](bool is_used, std::string_view begin) {
+    if (!is_used) {
+      std::erase_if(columns, [&](const Column& column) { return column.name.starts_with(begin); });
+    }
+  };
+  leave_out(store.has_groups(), "group_");
+  leave_out(store.has_planned_sessions(), "planned_session");
+  leave_out(store.has_changed_texts(), "protocol_text");
   return columns;
 }
 

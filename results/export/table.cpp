@@ -24,6 +24,7 @@ std::vector<Column> columns_of_context() {
       {"group_name", text, "", "Group of participants that the participant is in"},
       {"group_assignment", text, "",
        "balanced (by the participant's order_index), or given by the operator"},
+      {"planned_session", text, "", "Which of the protocol's sessions it is"},
       {"mode", text, "", "Who took part: real, pilot (a rehearsal) or simulated"},
       {"is_excluded", boolean, "", "The operator excluded the participant from the analysis"},
       {"exclusion_reason", text, "", "Why, in the operator's words; missing if not excluded"},
@@ -127,6 +128,9 @@ std::vector<Column> columns_of_sessions() {
       {"seed", text, "", "Seed of the session, unsigned, 64 bits, decimal: to be read as text"},
       {"planned_order", text, "", "Order of the trials, a line each"},
       {"rig_text", text, "", "Rig file, whole"},
+      {"protocol_text", text, "",
+       "Protocol of the session, whole, where texts for people were not those of the study's first "
+       "session"},
       {"doctor", text, "", "Performance of the machine before the session, JSON"},
       {"state", text, "", "State that the session entered"},
       {"detail", text, "",

@@ -93,6 +93,12 @@ SessionRow session_from(const Json& line) {
   if (line.contains("group")) {
     session.group = group_from(line.at("group"), line.at("group_assignment"));
   }
+  if (line.contains("planned_session")) {
+    session.planned_session = line.at("planned_session");
+  }
+  if (line.contains("protocol_text")) {
+    session.protocol_text = line.at("protocol_text");
+  }
   return session;
 }
 
@@ -203,6 +209,12 @@ std::string to_line(const SessionRow& session) {
   if (session.group) {
     line["group"] = session.group->name;
     line["group_assignment"] = assignment_of(*session.group);
+  }
+  if (session.planned_session) {
+    line["planned_session"] = *session.planned_session;
+  }
+  if (session.protocol_text) {
+    line["protocol_text"] = *session.protocol_text;
   }
   return dumped(line);
 }

@@ -17,8 +17,7 @@ std::set<std::string> program_versions_in(const std::string& directory) {
   const bool is_unfinished = std::filesystem::exists(file + "-journal", error);
   Database database{file, is_unfinished ? Database::Access::write : Database::Access::read};
   const std::int64_t version = database.pragma("user_version");
-  if (database.pragma("application_id") != application_id ||
-      (version != schema_version && version != schema_version_without_groups)) {
+  if (database.pragma("application_id") != application_id || !is_known_schema(version)) {
     return {};  // another program is about to create it, or it is no study of ours
   }
   std::set<std::string> versions;

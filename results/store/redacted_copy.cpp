@@ -23,9 +23,10 @@ INSERT INTO participant SELECT pseudonym, mode, participant_index, order_index,
   pseudonym.group_name, pseudonym.group_assignment
   FROM original.participant JOIN temp.pseudonym USING (participant_id)
   ORDER BY participant.rowid;
-INSERT INTO session SELECT session_id, pseudonym, seed, planned_order, language, resumes, rate_hz,
+INSERT INTO session SELECT session_id, pseudonym, planned.planned_session, planned.protocol_text, seed, planned_order, language, resumes, rate_hz,
   rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc
-  FROM original.session JOIN temp.pseudonym USING (participant_id) ORDER BY session_id;
+  FROM original.session JOIN temp.pseudonym USING (participant_id)
+  JOIN temp.planned AS planned USING (session_id) ORDER BY session_id;
 INSERT INTO trial SELECT trial_id, session_id, number, attempt, block, task, is_practice, is_catch,
   presented, repetition, status, duration_s
   FROM original.trial ORDER BY trial_id;
@@ -60,7 +61,9 @@ void fill_database(Database& database, const std::string& original, const StudyR
                    const std::set<std::pair<std::string, std::string>>& kept_items) {
   database.run("PRAGMA temp_store = MEMORY");
   Statement{database, "ATTACH ? AS original"}.bind(original).finish();
-  const bool has_groups = database.pragma("original.user_version") != schema_version_without_groups;
+  const std::int64_t version = database.pragma("original.user_version");
+  const bool has_groups = version >= first_version_with_groups;
+  const bool has_planned_sessions = version >= first_version_with_planned_sessions;
   Transaction all{database};
   database.run(schema_sql);
   database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", application_id,
@@ -72,6 +75,10 @@ void fill_database(Database& database, const std::string& original, const StudyR
                   : "NULL AS group_name, NULL AS group_assignment ") +
       "FROM original.participant LEFT JOIN original.session USING (participant_id) "
       "GROUP BY participant_id; "
+      "CREATE TEMP TABLE planned AS SELECT session_id, " +
+      (has_planned_sessions ? "planned_session, protocol_text "
+                            : "NULL AS planned_session, NULL AS protocol_text ") +
+      "FROM original.session; "
       "CREATE TEMP TABLE kept (form TEXT, item TEXT); CREATE TEMP TABLE protocol_file (file TEXT)");
   Statement{database, "INSERT INTO temp.protocol_file VALUES (?)"}
       .bind(fs::path{study.protocol_file}.filename().string())

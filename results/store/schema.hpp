@@ -1,14 +1,21 @@
 #pragma once
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 12;
-// Lacks the participants' groups, which its protocols did not have: such a store is read, and goes
-// on, as it is.
-inline constexpr int schema_version_without_groups = 11;
+inline constexpr int schema_version = 13;
+// Stores of these lack what their protocols did not have: the participants' groups, a protocol's
+// sessions and its changed texts. They are read, and go on, as they are.
+inline constexpr int first_schema_version = 11;
+inline constexpr int first_version_with_groups = 12;
+inline constexpr int first_version_with_planned_sessions = 13;
+inline constexpr bool is_known_schema(std::int64_t version) {
+  return version >= first_schema_version && version <= schema_version;
+}
 
 // Tables hold each fact once; the views v_… are for reading by hand and for exports.
 inline constexpr const char* schema_sql = R"sql(
@@ -39,6 +46,8 @@ CREATE TABLE participant (
 CREATE TABLE session (
   session_id INTEGER PRIMARY KEY,
   participant_id TEXT NOT NULL REFERENCES participant,
+  planned_session TEXT,             -- which of the protocol's; NULL: it has none
+  protocol_text TEXT,               -- NULL: the study's; else the same but for texts for people
   seed TEXT NOT NULL,               -- unsigned 64 bit, decimal
   planned_order TEXT NOT NULL,
   language TEXT NOT NULL,           -- of what the participant read
@@ -158,13 +167,13 @@ CREATE VIEW excluded_participant AS SELECT participant_id, detail AS exclusion_r
    FROM operator_action JOIN session USING (session_id)
    WHERE action IN ('exclude', 'include'))
   WHERE from_latest = 1 AND action = 'exclude';
-CREATE VIEW v_sessions AS SELECT session_id, participant_id, group_name, group_assignment, participant_index, order_index, mode,
+CREATE VIEW v_sessions AS SELECT session_id, participant_id, group_name, planned_session, group_assignment, participant_index, order_index, mode,
     exclusion_reason IS NOT NULL AS is_excluded, exclusion_reason, resumes, started_utc, language,
     rate_hz, device, scheduler, program_version, git_hash, compiler, seed, planned_order,
-    rig_text, doctor
+    rig_text, protocol_text, doctor
   FROM session JOIN participant USING (participant_id)
   LEFT JOIN excluded_participant USING (participant_id);
-CREATE VIEW trial_context AS SELECT trial_id, session_id, participant_id, group_name, mode, is_excluded,
+CREATE VIEW trial_context AS SELECT trial_id, session_id, participant_id, group_name, planned_session, mode, is_excluded,
     exclusion_reason, block, task, number, attempt, repetition, is_practice, is_catch, presented,
     status, duration_s,
     CASE (SELECT count(*) FROM alternative WHERE alternative.trial_id = trial.trial_id)
@@ -172,7 +181,7 @@ CREATE VIEW trial_context AS SELECT trial_id, session_id, participant_id, group_
     END AS stimulus               -- NULL if there were several
   FROM trial JOIN v_sessions USING (session_id);
 -- An alternative is visited from the switch to it until the next switch or the trial's end.
-CREATE VIEW v_visits AS SELECT trial_id, session_id, participant_id, group_name, mode, is_excluded, exclusion_reason, block, task,
+CREATE VIEW v_visits AS SELECT trial_id, session_id, participant_id, group_name, planned_session, mode, is_excluded, exclusion_reason, block, task,
     number, attempt, is_practice, is_catch, presented, status, visit, visited.position AS position, label,
     alternative.stimulus AS stimulus, begin_s,
     coalesce(next_s, duration_s) AS end_s, coalesce(next_s, duration_s) - begin_s AS dwell_s
@@ -181,7 +190,7 @@ CREATE VIEW v_visits AS SELECT trial_id, session_id, participant_id, group_name,
       lead(t_s) OVER (PARTITION BY trial_id ORDER BY t_s) AS next_s
     FROM event WHERE kind = 'switch') AS visited
   JOIN trial_context USING (trial_id) JOIN alternative USING (trial_id, position);
-CREATE VIEW v_stimuli AS SELECT trial_id, session_id, participant_id, group_name, mode, is_excluded, exclusion_reason, block, task,
+CREATE VIEW v_stimuli AS SELECT trial_id, session_id, participant_id, group_name, planned_session, mode, is_excluded, exclusion_reason, block, task,
     number, attempt, is_practice, is_catch, presented, status, alternative.position AS position, label,
     alternative.stimulus AS stimulus, is_comparison,
     (SELECT group_concat(axis || '=' || value, ' ') FROM axis_value
@@ -192,7 +201,7 @@ CREATE VIEW v_stimuli AS SELECT trial_id, session_id, participant_id, group_name
   LEFT JOIN (SELECT trial_id, position, count(*) AS visits,
       sum(dwell_s) AS total_dwell_s FROM v_visits GROUP BY trial_id, position)
     USING (trial_id, position);
-CREATE VIEW v_answers AS SELECT response_id, trial_id, session_id, participant_id, group_name, mode, is_excluded, exclusion_reason, block, task,
+CREATE VIEW v_answers AS SELECT response_id, trial_id, session_id, participant_id, group_name, planned_session, mode, is_excluded, exclusion_reason, block, task,
     number, attempt, is_practice, is_catch, presented, status,
     stimulus, response, is_correct, response_time_s, time_from_first_contact_s, confidence,
     given_by, supersedes, supersedes IS NOT NULL AS is_correction,
@@ -224,18 +233,35 @@ CREATE VIEW v_trials AS SELECT trial_context.*, current_response.response AS res
   LEFT JOIN tick_statistics ON tick_statistics.trial_id = trial_context.trial_id;
 )sql";
 
-// What of the above a schema without groups lacks.
-inline constexpr std::array<std::string_view, 5> schema_of_groups{
-    "  group_name TEXT,                     -- NULL: the protocol has no groups\n",
-    "  group_assignment TEXT CHECK (group_assignment IN ('balanced', 'given')),\n",
-    "  CHECK ((group_name IS NULL) = (group_assignment IS NULL)),\n", "group_name, ",
-    "group_assignment, "};
+// What of the above the schemas before a version lack.
+struct LaterSchemaText {
+  int since;
+  std::string_view text;
+};
+inline constexpr std::array<LaterSchemaText, 9> later_schema_texts{{
+    {first_version_with_groups,
+     "  group_name TEXT,                     -- NULL: the protocol has no groups\n"},
+    {first_version_with_groups,
+     "  group_assignment TEXT CHECK (group_assignment IN ('balanced', 'given')),\n"},
+    {first_version_with_groups, "  CHECK ((group_name IS NULL) = (group_assignment IS NULL)),\n"},
+    {first_version_with_groups, "group_name, "},
+    {first_version_with_groups, "group_assignment, "},
+    {first_version_with_planned_sessions,
+     "  planned_session TEXT,             -- which of the protocol's; NULL: it has none\n"},
+    {first_version_with_planned_sessions,
+     "  protocol_text TEXT,               -- NULL: the study's; else the same but for texts for "
+     "people\n"},
+    {first_version_with_planned_sessions, "planned_session, "},
+    {first_version_with_planned_sessions, "protocol_text, "},
+}};
 
-inline std::string schema_sql_without_groups() {
+inline std::string schema_sql_of(int version) {
   std::string sql = schema_sql;
-  for (const std::string_view text : schema_of_groups) {
-    for (auto at = sql.find(text); at != std::string::npos; at = sql.find(text)) {
-      sql.erase(at, text.size());
+  for (const LaterSchemaText& later : later_schema_texts) {
+    const std::size_t size = later.text.size();
+    for (auto at = sql.find(later.text); version < later.since && at != std::string::npos;
+         at = sql.find(later.text)) {
+      sql.erase(at, size);
     }
   }
   return sql;

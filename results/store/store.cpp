@@ -67,7 +67,8 @@ void use_write_ahead_log(Database& database) {
 
 }  // namespace
 
-Store Store::open_or_create(const std::string& directory, const StudyRow& study) {
+Store Store::open_or_create(const std::string& directory, const StudyRow& study,
+                            const AcceptText& accept) {
   make_directory(directory);
   if (!has_database(directory) && has_journal(directory)) {
     throw StoreError{fmt::format(
@@ -80,7 +81,7 @@ Store Store::open_or_create(const std::string& directory, const StudyRow& study)
     store.check_is_sound();  // before anything in it is changed
   }
   use_write_ahead_log(store.database_);
-  store.create_or_check(study);
+  store.create_or_check(study, accept);
   // a program killed between the two leaves the journal an answer behind
   store.journal_->complete([&] { return store.study(); }, store.sessions(),
                            store.entries_for_journal());
@@ -179,23 +180,39 @@ std::ptrdiff_t first_difference(const std::string& one, const std::string& other
 
 // Runs in one transaction: of two programs started concurrently one creates the study, the other
 // finds it.
-void Store::create_or_check(const StudyRow& study) {
+void Store::create_or_check(const StudyRow& study, const AcceptText& accept) {
   Transaction all{database_};
   if (!is_empty()) {
     check_version();
-    const StudyRow stored = study_without_surfaces();
+    const StudyRow stored = accept ? this->study() : study_without_surfaces();
     if (stored.protocol_sha256 != study.protocol_sha256) {
-      throw core::InvalidInput{
-          fmt::format("{}: holds the study of another protocol, '{}', whose text differs from line "
-                      "{} on (choose another --out; to change a running study, start a new one)",
-                      database_.file(), stored.title,
-                      first_difference(stored.protocol_text, study.protocol_text))};
+      if (!accept || !has_columns_of_planned_sessions()) {
+        throw core::InvalidInput{fmt::format(
+            "{}: holds the study of another protocol, '{}', whose text differs from line {} on "
+            "(choose another --out; to change a running study, start a new one)",
+            database_.file(), stored.title,
+            first_difference(stored.protocol_text, study.protocol_text))};
+      }
+      accept(stored, latest_protocol_text().value_or(stored.protocol_text));
+      changed_protocol_text_ = study.protocol_text;
+    } else if (accept && has_columns_of_planned_sessions()) {
+      if (const auto latest = latest_protocol_text(); latest && *latest != stored.protocol_text) {
+        accept(stored, *latest);  // back to the text of the beginning
+      }
     }
     check_surfaces(study);
     return;
   }
   create(study);
   all.commit();
+}
+
+// Of the latest session; unset: there is none yet.
+std::optional<std::string> Store::latest_protocol_text() {
+  Statement row{database_,
+                "SELECT coalesce(session.protocol_text, study.protocol_text) FROM session "
+                "JOIN study ORDER BY session_id DESC LIMIT 1"};
+  return row.step() ? std::optional{row.text(0)} : std::nullopt;
 }
 
 void Store::create(const StudyRow& study) {
@@ -308,7 +325,7 @@ void Store::check_schema() {
     return objects;
   };
   Database reference = Database::in_memory("the schema");
-  reference.run(has_columns_of_groups() ? schema_sql : schema_sql_without_groups());
+  reference.run(schema_sql_of(static_cast<int>(database_.pragma("user_version"))));
   const std::set<std::string> known = objects_of(reference);
   const std::set<std::string> found = objects_of(database_);
   for (const std::string& object : found) {
@@ -327,15 +344,19 @@ void Store::check_version() {
     throw StoreError{database_.file() + ": is not a tapstudy database"};
   }
   const std::int64_t version = database_.pragma("user_version");
-  if (version != schema_version && version != schema_version_without_groups) {
+  if (!is_known_schema(version)) {
     throw StoreError{
-        fmt::format("{}: has schema {}, this program reads {} and {} (the version of "
-                    "tapstudy that wrote it reads it)",
-                    database_.file(), version, schema_version_without_groups, schema_version)};
+        fmt::format("{}: has schema {}, this program reads {} to {} (the version of tapstudy that "
+                    "wrote it reads it)",
+                    database_.file(), version, first_schema_version, schema_version)};
   }
 }
 
 bool Store::has_columns_of_groups() {
-  return database_.pragma("user_version") != schema_version_without_groups;
+  return database_.pragma("user_version") >= first_version_with_groups;
+}
+
+bool Store::has_columns_of_planned_sessions() {
+  return database_.pragma("user_version") >= first_version_with_planned_sessions;
 }
 }  // namespace tapstudy::results

@@ -23,10 +23,16 @@ enum class SaveOutcome { in_one_file, partly_in_log };
 // functions throw StoreError.
 class Store {
  public:
+  // Of a protocol whose text is another than the study's, or than that of the latest session:
+  // throws InvalidInput unless it asks for the same data.
+  using AcceptText =
+      std::function<void(const StudyRow& stored, const std::string& text_of_latest_session)>;
   // Opens the study of this protocol in the directory, or creates both; checks the database's
   // integrity and that it holds tapstudy's tables and nothing else.
   // Throws InvalidInput if the directory holds the study of another protocol, or of other surfaces.
-  static Store open_or_create(const std::string& directory, const StudyRow& study);
+  // Where another protocol is accepted, sessions that are added are stored with its text.
+  static Store open_or_create(const std::string& directory, const StudyRow& study,
+                              const AcceptText& accept = {});
   // Opens a study for reading, with the same checks. Throws InvalidInput if there is no study.
   static Store open_existing(const std::string& directory);
   // A store in memory rebuilt from the journal alone: answers without traces, events, statistics of
@@ -67,6 +73,9 @@ class Store {
   bool has_sessions(const std::string& participant_id);
   // Whether any participant is in a group.
   bool has_groups();
+  // Whether any session is one of the protocol's; has another text of the protocol.
+  bool has_planned_sessions();
+  bool has_changed_texts();
   // No other program adds anything while `act` runs; all that it adds is kept, or nothing.
   void in_one_transaction(const std::function<void()>& act);
   // Adds the participant if new; fills in the row's id.
@@ -122,6 +131,7 @@ class Store {
   void check_version();
   void check_schema();
   bool has_columns_of_groups();
+  bool has_columns_of_planned_sessions();
   void add_participant(const SessionRow& session);
   std::string session_columns();
   void create(const StudyRow& study);
@@ -155,12 +165,14 @@ class Store {
   void add_surfaces(const StudyRow& study);
   void check_surfaces(const StudyRow& study);  // by their hashes
   bool is_empty();
-  void create_or_check(const StudyRow& study);
+  void create_or_check(const StudyRow& study, const AcceptText& accept);
+  std::optional<std::string> latest_protocol_text();
   void check_not_answered(const TrialRow& trial);
   void add_alternatives(std::int64_t trial_id, const std::vector<AlternativeRow>& alternatives);
   void add_details(std::int64_t trial_id, const TrialRecord& record);
   Database database_;
   std::optional<Journal> journal_;
+  std::optional<std::string> changed_protocol_text_;  // of the sessions that this one adds
   bool confirms_{true};
   std::optional<std::array<std::int64_t, 3>> unconfirmed_;  // a trial that is committed, no more
   // Committed by a call that then failed.

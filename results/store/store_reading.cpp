@@ -47,6 +47,8 @@ SessionRow session_from(Statement& row, const std::string& file) {
   if (const auto group = row.optional_text(18)) {
     session.group = group_from(*group, row.text(19));
   }
+  session.planned_session = row.optional_text(20);
+  session.protocol_text = row.optional_text(21);
   return session;
 }
 }  // namespace
@@ -55,8 +57,9 @@ std::string Store::session_columns() {
   return fmt::format(
       "session_id, participant_id, participant_index, order_index, mode, seed, planned_order, "
       "language, resumes, rate_hz, rig_text, device, scheduler, doctor, program_version, git_hash, "
-      "compiler, started_utc, {}",
-      has_columns_of_groups() ? "group_name, group_assignment" : "NULL, NULL");
+      "compiler, started_utc, {}, {}",
+      has_columns_of_groups() ? "group_name, group_assignment" : "NULL, NULL",
+      has_columns_of_planned_sessions() ? "planned_session, protocol_text" : "NULL, NULL");
 }
 
 std::vector<SessionRow> Store::sessions() {

@@ -105,6 +105,24 @@ bool Store::has_groups() {
   return row.integer(0) > 0;
 }
 
+bool Store::has_planned_sessions() {
+  if (!has_columns_of_planned_sessions()) {
+    return false;
+  }
+  Statement row{database_, "SELECT count(planned_session) FROM session"};
+  row.step();
+  return row.integer(0) > 0;
+}
+
+bool Store::has_changed_texts() {
+  if (!has_columns_of_planned_sessions()) {
+    return false;
+  }
+  Statement row{database_, "SELECT count(protocol_text) FROM session"};
+  row.step();
+  return row.integer(0) > 0;
+}
+
 void Store::add_participant(const SessionRow& session) {
   const bool has_columns = has_columns_of_groups();
   if (session.group && !has_columns) {
@@ -131,12 +149,21 @@ void Store::add_participant(const SessionRow& session) {
 void Store::add_session(SessionRow& session) {
   Transaction all{database_};
   add_participant(session);
-  Statement{
+  const bool has_columns = has_columns_of_planned_sessions();
+  if (changed_protocol_text_) {
+    session.protocol_text = changed_protocol_text_;
+  }
+  if (!has_columns && (session.planned_session || session.protocol_text)) {
+    throw StoreError{database_.file() + ": is of a study without planned sessions"};
+  }
+  Statement row{
       database_,
-      "INSERT INTO session (participant_id, seed, planned_order, language, resumes, rate_hz, "
-      "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, started_utc) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"}
-      .bind(session.participant_id)
+      fmt::format(
+          "INSERT INTO session (participant_id, seed, planned_order, language, resumes, rate_hz, "
+          "rig_text, device, scheduler, doctor, program_version, git_hash, compiler, "
+          "started_utc{}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?{})",
+          has_columns ? ", planned_session, protocol_text" : "", has_columns ? ", ?, ?" : "")};
+  row.bind(session.participant_id)
       .bind(std::to_string(session.seed))
       .bind(session.planned_order)
       .bind(session.language)
@@ -149,8 +176,11 @@ void Store::add_session(SessionRow& session) {
       .bind(session.program_version)
       .bind(session.git_hash)
       .bind(session.compiler)
-      .bind(session.started_utc)
-      .finish();
+      .bind(session.started_utc);
+  if (has_columns) {
+    row.bind(session.planned_session).bind(session.protocol_text);
+  }
+  row.finish();
   session.id = database_.last_row_id();
   all.commit();
   journal_sessions();

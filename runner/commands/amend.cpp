@@ -11,6 +11,7 @@
 #include "results/store/recorder.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
+#include "runner/session/engine/session_row.hpp"
 #include "runner/session/operators/operator_desk.hpp"
 #include "runner/studies/stored_study.hpp"
 #include "runner/terminal/session_lock.hpp"
@@ -48,11 +49,7 @@ OperatorCommand amendment_in(const std::string& line) {
 
 // Uses the wall clock, because the session's own ended with it.
 double seconds_since(const std::string& started_utc) {
-  std::tm started{};
-  if (strptime(started_utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &started) == nullptr) {
-    return 0.0;
-  }
-  return std::max(0.0, std::difftime(std::time(nullptr), timegm(&started)));
+  return std::max(0.0, std::difftime(std::time(nullptr), time_from(started_utc)));
 }
 
 // The one in which the trial was presented; without a trial the latest.

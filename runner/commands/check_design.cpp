@@ -19,6 +19,7 @@
 #include "results/traces/trace_codec.hpp"
 #include "runner/commands/check_screens.hpp"
 #include "runner/session/devices/masking_card.hpp"
+#include "runner/session/engine/planned_sessions.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/studies/counted.hpp"
 namespace tapstudy::runner {
@@ -353,10 +354,11 @@ void print_sessions(const protocols::Protocol& protocol, const BlockLengths& len
     const Session session = session_of(group, protocol, lengths);
     const int members = protocols::members(protocol, group, participants);
     recorded_s += session.recorded_s * members;
-    fmt::print("  {} participants, about {} min each: {} of tapping, {} for the screens below\n",
+    fmt::print("  {} participants, about {} min each{}: {} of tapping, {} for the screens below\n",
                group == nullptr ? std::to_string(participants)
                                 : described_group(*group, session, members, participants),
-               minutes(session.tapped_s) + minutes(session.screens_s), minutes(session.tapped_s),
+               minutes(session.tapped_s) + minutes(session.screens_s),
+               protocol.sessions.empty() ? "" : " in all sessions", minutes(session.tapped_s),
                minutes(session.screens_s));
   }
   const auto groups = static_cast<int>(std::max<std::size_t>(protocol.groups.size(), 1));
@@ -366,6 +368,15 @@ void print_sessions(const protocols::Protocol& protocol, const BlockLengths& len
   }
   fmt::print("  about {:.0f} MB of disk for all, if they tap no longer than simulated ones\n",
              1e-6 * results::usual_bytes_per_tick * recorded_s * protocol.rate_hz);
+}
+
+void print_planned_sessions(const protocols::Protocol& protocol) {
+  for (const protocols::PlannedSession& session : protocol.sessions) {
+    const std::string interval = described_interval(session);
+    fmt::print("  session {}{}: {}\n", session.name,
+               interval.empty() ? "" : ", " + interval + " after the one before began",
+               fmt::join(session.blocks, ", "));
+  }
 }
 
 void print_languages(const protocols::Protocol& protocol) {
@@ -395,6 +406,7 @@ void print_design(const protocols::Protocol& protocol, int participants) {
   const BlockLengths lengths = lengths_of(protocol);
   print_blocks(protocol, lengths, participants);
   print_sessions(protocol, lengths, participants);
+  print_planned_sessions(protocol);
   warn_of_block_order(protocol, participants);
   if (protocol.masking) {
     fmt::print("\nmasking\n  {} in every trial; {}\n", described(*protocol.masking),

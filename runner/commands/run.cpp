@@ -28,6 +28,7 @@ struct RunOptions {
   std::string language;
   bool resume{false};
   bool pilot{false};
+  bool at_any_time{false};
 };
 
 int number_for(const char* option, const std::string& text, int low, int high) {
@@ -68,6 +69,7 @@ SessionRequest request_of(const RunOptions& options) {
   request.mode = options.pilot ? results::Mode::pilot : results::Mode::real;
   request.language = options.language;
   request.group = options.group;
+  request.at_any_time = options.at_any_time;
   request.resume = options.resume ? Resume::yes : Resume::no;
   if (!options.seed.empty()) {
     request.seed = seed_from(options.seed, "--seed");
@@ -99,12 +101,12 @@ void warn_of_language(const protocols::Protocol& protocol, const RunOptions& opt
   }
 }
 
-// A session goes on in the language that it was begun in.
+// A session goes on in the language that it was begun in, and who comes again reads the same one.
 std::string language_of(const RunOptions& options) {
   if (!options.language.empty()) {
     return options.language;
   }
-  if (options.resume && results::Store::has_database(options.directory)) {
+  if (results::Store::has_database(options.directory)) {
     const auto earlier =
         results::Store::open_existing(options.directory).latest_session(options.participant);
     if (earlier && !earlier->language.empty()) {
@@ -128,11 +130,13 @@ void run(RunOptions options) {
                options.participant, *outcome.ending_answer, options.directory);
     return;
   }
-  fmt::print("participant {}: all {} trials are stored in {}/study.db{}\n", options.participant,
-             outcome.answered + outcome.without_answer, options.directory,
+  fmt::print("participant {}: all {} trials{} are stored in {}/study.db{}{}\n", options.participant,
+             outcome.answered + outcome.without_answer,
+             outcome.session.empty() ? "" : " of session " + outcome.session, options.directory,
              outcome.without_answer == 0
                  ? ""
-                 : fmt::format(", {} of them without an answer", outcome.without_answer));
+                 : fmt::format(", {} of them without an answer", outcome.without_answer),
+             outcome.next_session.empty() ? "" : "; the next is " + outcome.next_session);
 }
 }  // namespace
 
@@ -156,6 +160,8 @@ void add_run(CommandParser& line) {
   command.option("--language", options->language,
                  "Of what the participant reads: en, ja, …; else English, or as before");
   command.flag("--resume", options->resume, "Resume the participant's last session");
+  command.flag("--any-time", options->at_any_time,
+               "Begin the next session although it is too early or too late; that is noted");
   command.flag("--pilot", options->pilot, "Mark as a pilot, kept out of reports");
   command.on_run([options] { run(*options); });
 }

@@ -15,10 +15,13 @@
 #include "runner/session/devices/device_kind.hpp"
 #include "runner/session/devices/masking_card.hpp"
 #include "runner/session/devices/rigs.hpp"
+#include "runner/session/engine/open_study.hpp"
+#include "runner/session/engine/planned_sessions.hpp"
 #include "runner/session/engine/remaining_trials.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/engine/stored_names.hpp"
 #include "runner/session/markers/markers.hpp"
+#include "runner/session/operators/operator.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/operator_dialogue.hpp"
 #include "runner/terminal/process_exit.hpp"
@@ -53,9 +56,10 @@ std::uint64_t drawn_seed() {
 }
 
 std::optional<results::SessionRow> earlier_session(const SessionRequest& request,
+                                                   const protocols::Protocol& protocol,
                                                    results::Store& store) {
   auto earlier = store.latest_session(request.participant_id);
-  if (earlier && request.resume == Resume::no) {
+  if (earlier && request.resume == Resume::no && protocol.sessions.empty()) {
     throw core::InvalidInput{
         fmt::format("participant '{}' is in this study already (go on with "
                     "--resume, or choose another id)",
@@ -76,20 +80,22 @@ std::optional<results::SessionRow> earlier_session(const SessionRequest& request
   return earlier;
 }
 
-// The order of a participant who resumes is the stored one.
+// The order of a participant who resumes or comes again is the stored one.
 void check_keeps_order(const SessionRequest& request, const results::SessionRow& earlier) {
+  const char* const keeping = request.resume == Resume::yes ? "--resume" : "a later session";
   if (request.order_index) {
-    throw core::InvalidInput{"--row: cannot be combined with --resume, which keeps the order"};
+    throw core::InvalidInput{
+        fmt::format("--row: cannot be combined with {}, which keeps the order", keeping)};
   }
   if (request.seed && *request.seed != earlier.seed) {
-    throw core::InvalidInput{fmt::format(
-        "--seed: this participant's order was drawn with seed {}, and --resume keeps it",
-        earlier.seed)};
+    throw core::InvalidInput{
+        fmt::format("--seed: this participant's order was drawn with seed {}, and {} keeps it",
+                    earlier.seed, keeping)};
   }
   if (!request.group.empty() && (!earlier.group || request.group != earlier.group->name)) {
-    throw core::InvalidInput{
-        fmt::format("--group: this participant is in {}, and --resume keeps it",
-                    earlier.group ? "'" + earlier.group->name + "'" : std::string{"no group"})};
+    throw core::InvalidInput{fmt::format(
+        "--group: this participant is in {}, and {} keeps it",
+        earlier.group ? "'" + earlier.group->name + "'" : std::string{"no group"}, keeping)};
   }
 }
 
@@ -141,13 +147,13 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
   session.earlier.forms = store.form_answers_of(earlier.participant_id);
   if (const auto answer = ending_answer(protocol, session.earlier.forms)) {
     throw core::InvalidInput{
-        fmt::format("--resume: participant '{}' takes no part: answered {}, which ends the session",
+        fmt::format("participant '{}' takes no part: answered {}, which ends the session",
                     earlier.participant_id, *answer)};
   }
   if (earlier.planned_order != session.row.planned_order) {
     throw core::InvalidInput{
-        "--resume: this program would plan another order than the stored "
-        "one; resume with the version that began the session"};
+        "this program would plan another order than the stored one; go on with the version that "
+        "began the study with this participant"};
   }
   session.row.resumes = earlier.id;
   session.resumed_since_utc = earlier.started_utc;
@@ -165,6 +171,43 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
     session.done.insert(trials.begin(), trials.end());
   }
 }
+// Where the protocol has sessions: which of them it is. Only its trials are left then.
+void take_up_session(const SessionRequest& request, const protocols::Protocol& protocol,
+                     const std::optional<results::SessionRow>& earlier, BegunSession& session) {
+  if (protocol.sessions.empty()) {
+    return;
+  }
+  const protocols::PlannedSession* planned = nullptr;
+  if (earlier && request.resume == Resume::yes) {
+    planned = protocol.find_session(earlier->planned_session.value_or(""));
+  } else {
+    planned =
+        &next_session(protocol, session.schedule, session.done, earlier ? &*earlier : nullptr);
+    session.row.resumes.reset();
+    session.resumed_since_utc.clear();
+  }
+  const auto problem = earlier && request.resume == Resume::no
+                           ? too_early_or_late(*planned, *earlier, request.now())
+                           : std::nullopt;
+  if (problem && !request.at_any_time) {
+    throw core::InvalidInput{
+        fmt::format("participant '{}': {} (--any-time begins it all the same, "
+                    "and notes that with the session)",
+                    request.participant_id, *problem)};
+  }
+  session.note = problem ? *problem + " (--any-time)" : "";
+  session.row.planned_session = planned->name;
+  session.earlier.comes_again = comes_again(*planned, protocol, session.schedule);
+  session.schedule = trials_of_session(session.schedule, protocol, planned->name);
+  const auto is_of_another = [&](int number) {
+    return std::ranges::find(session.schedule, number, &protocols::PlannedTrial::number) ==
+           session.schedule.end();
+  };
+  std::erase_if(session.done, is_of_another);
+  std::erase_if(session.earlier.as_given, [&](const results::JournalledAnswer& answer) {
+    return is_of_another(answer.trial.number);
+  });
+}
 }  // namespace
 
 BegunSession begin_session(const SessionRequest& request, const protocols::Protocol& protocol,
@@ -179,7 +222,7 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
   BegunSession session;
   // sessions begun at the same time must not get the same index
   store.in_one_transaction([&] {
-    const auto earlier = earlier_session(request, store);
+    const auto earlier = earlier_session(request, protocol, store);
     if (earlier) {
       check_keeps_order(request, *earlier);
     }
@@ -198,12 +241,18 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
     session.schedule =
         earlier ? make_schedule(protocol, plan.seed, plan.order_index, earlier->planned_order)
                 : make_schedule(protocol, plan.seed, plan.order_index);
+    plan.started = request.now();
     session.row = session_row(plan, protocol, rig, session.schedule);
     if (earlier) {
       resume(*earlier, protocol, store, session);
     }
+    take_up_session(request, protocol, earlier, session);
     store.add_session(session.row);
   });
+  if (!session.note.empty()) {
+    store.add_operator_action(
+        {session.row.id, 0.0, std::string{name(OperatorAction::note)}, {}, session.note});
+  }
   return session;
 }
 
@@ -243,6 +292,10 @@ void say_what_was_found(const BegunSession& session) {
     say("participant {} is in group {} ({})\n", session.row.participant_id, group->name,
         group->is_given ? "given by the operator" : "assigned by the study's counterbalancing");
   }
+  if (const auto& planned = session.row.planned_session) {
+    say("participant {} does session {}: {} trials{}\n", session.row.participant_id, *planned,
+        session.schedule.size(), session.note.empty() ? "" : "; " + session.note);
+  }
   if (session.resumed_since_utc.empty()) {
     return;
   }
@@ -250,6 +303,42 @@ void say_what_was_found(const BegunSession& session) {
   say("participant {} goes on with the session begun {}: {} of {} trials are done, {} left\n",
       session.row.participant_id, session.resumed_since_utc, done, session.schedule.size(),
       session.schedule.size() - done);
+}
+}  // namespace
+
+namespace {
+std::size_t count_in(const protocols::Schedule& schedule, const std::vector<int>& numbers) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(schedule, [&](const protocols::PlannedTrial& trial) {
+        return std::ranges::find(numbers, trial.number) != numbers.end();
+      }));
+}
+
+// "day_2, 24 to 48 h after this one began"; empty: it was the last.
+std::string next_session_in_words(const BegunSession& session,
+                                  const protocols::Protocol& protocol) {
+  if (!session.earlier.comes_again) {
+    return "";
+  }
+  const protocols::Schedule whole =
+      make_schedule(protocol, session.row.seed, session.row.order_index, session.row.planned_order);
+  const protocols::PlannedSession* next =
+      protocol.find_session(session.row.planned_session.value_or("")) + 1;
+  while (trials_of_session(whole, protocol, next->name).empty()) {
+    ++next;
+  }
+  const std::string interval = described_interval(*next);
+  return next->name + (interval.empty() ? "" : ", " + interval + " after this one began");
+}
+
+LiveOutcome outcome_of(const BegunSession& session, const protocols::Protocol& protocol,
+                       results::Store& store) {
+  const std::string& id = session.row.participant_id;
+  const std::size_t given_up = count_in(session.schedule, given_up_trials(protocol, id, store));
+  const std::size_t unneeded = count_in(session.schedule, unneeded_trials(protocol, id, store));
+  return {session.schedule.size() - given_up - unneeded, given_up,
+          ending_answer(protocol, store.form_answers_of(id)),
+          session.row.planned_session.value_or(""), next_session_in_words(session, protocol)};
 }
 }  // namespace
 
@@ -275,8 +364,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
   Markers markers{live.rig.markers};
   std::unique_ptr<device::PcmSink> card = open_masking_card(live.protocol, live.rig);
-  results::Store store =
-      results::Store::open_or_create(live.directory, study_row(live.protocol, live.protocol_file));
+  results::Store store = open_study(live.directory, live.protocol, live.protocol_file);
   check_names(store, live.protocol);
   BegunSession session = begin_session(
       request_of(live), live.protocol, live.rig,
@@ -289,10 +377,6 @@ LiveOutcome run_live_session(const LiveSession& live) {
               markers, store, session},
              std::move(device)}
       .run();
-  const std::string& id = session.row.participant_id;
-  const std::size_t given_up = given_up_trials(live.protocol, id, store).size();
-  const std::size_t unneeded = unneeded_trials(live.protocol, id, store).size();
-  return {session.schedule.size() - given_up - unneeded, given_up,
-          ending_answer(live.protocol, store.form_answers_of(id))};
+  return outcome_of(session, live.protocol, store);
 }
 }  // namespace tapstudy::runner

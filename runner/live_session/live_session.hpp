@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <ctime>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -34,6 +36,9 @@ struct SessionRequest {
   std::optional<int> order_index;     // of a new participant; the first free one if unset
   std::string language{"en"};         // of what the participant reads
   std::string group{};  // of a new participant; empty: that of the participant's order index
+  // Begins a session of a participant who comes again although it is too early or too late.
+  bool at_any_time{false};
+  std::function<std::time_t()> now{[] { return std::time(nullptr); }};
 };
 
 struct BegunSession {
@@ -42,11 +47,14 @@ struct BegunSession {
   std::set<int> done;  // numbers of trials that are answered already
   EarlierAnswers earlier{};
   std::string resumed_since_utc{};  // when the session began that is gone on with; empty: none
+  std::string note{};               // of its time, where that is not the protocol's; empty: none
 };
 
 // Starts a new session, or resumes the participant's last one with its trial order; seed and order
-// are stored on return. Throws InvalidInput if the participant has a session and does not resume,
-// has none to resume, or if this program would generate an order other than the stored one.
+// are stored on return. Where the protocol has sessions, who has done one does the next, whose
+// trials are those of the same order. Throws InvalidInput if the participant has a session and does
+// not resume, has none to resume, comes too early or too late, or if this program would generate an
+// order other than the stored one.
 BegunSession begin_session(const SessionRequest& request, const protocols::Protocol& protocol,
                            const protocols::Rig& rig, const PreflightReport& preflight,
                            results::Store& store);
@@ -65,6 +73,8 @@ struct LiveOutcome {
   std::size_t answered{};
   std::size_t without_answer{};                // their time was over
   std::optional<std::string> ending_answer{};  // to a form, by which the session has ended
+  std::string session{};                       // of the protocol's; empty: it has none
+  std::string next_session{};                  // and when it may begin; empty: none
 };
 
 // Takes the participant through all unanswered trials.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <ctime>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -13,12 +14,16 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/statistics/quantiles.hpp"
 #include "protocols/axes/axis.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "runner/session/devices/masking_card.hpp"
+#include "runner/session/engine/open_study.hpp"
+#include "runner/session/engine/planned_sessions.hpp"
+#include "runner/session/engine/session_row.hpp"
 #include "runner/studies/counted.hpp"
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
@@ -386,6 +391,75 @@ CitingText describe_groups(const std::vector<GroupMembers>& groups,
                     : fmt::format("; the operator chose the group of {} of them", given.size()));
 }
 
+// "24.1 to 26.3 h (median 25) after the one before began"; "" of simulated ones.
+std::string described_times(const protocols::PlannedSession& planned,
+                            const std::vector<results::SessionRow>& sessions) {
+  std::map<std::string, const results::SessionRow*> latest;  // by participant
+  std::vector<double> hours;
+  for (const results::SessionRow& session : sessions) {
+    const results::SessionRow* const before =
+        std::exchange(latest[session.participant_id], &session);
+    if (before != nullptr && session.planned_session == planned.name &&
+        before->planned_session != planned.name) {
+      hours.push_back(
+          std::difftime(time_from(session.started_utc), time_from(before->started_utc)) / 3600.0);
+    }
+  }
+  if (hours.empty() || sessions.front().mode == results::Mode::simulated) {
+    return "";
+  }
+  const auto [least, most] = std::ranges::minmax(hours);
+  return fmt::format(", {:.3g} to {:.3g} h (median {:.3g} h) after the one before began", least,
+                     most, analysis::quantile(hours, 0.5));
+}
+
+// "" where participants came once.
+std::string describe_planned_sessions(const Protocol& protocol,
+                                      const std::vector<results::SessionRow>& sessions,
+                                      const std::set<std::string>& participants) {
+  std::vector<std::string> described;
+  for (const protocols::PlannedSession& planned : protocol.sessions) {
+    std::set<std::string> came;
+    for (const results::SessionRow& session : sessions) {
+      if (session.planned_session == planned.name &&
+          participants.contains(session.participant_id)) {
+        came.insert(session.participant_id);
+      }
+    }
+    const std::string interval = described_interval(planned);
+    described.push_back(fmt::format(
+        "'{}' (n = {}; '{}'{}){}", planned.name, came.size(), fmt::join(planned.blocks, "', '"),
+        interval.empty() ? "" : "; planned: " + interval, described_times(planned, sessions)));
+  }
+  return described.empty() ? ""
+                           : fmt::format("Participants came to {} sessions: {}. ", described.size(),
+                                         fmt::join(described, "; "));
+}
+
+// "" where all sessions had the study's texts.
+std::string changed_texts(const Protocol& protocol,
+                          const std::vector<results::SessionRow>& sessions) {
+  std::map<std::string, std::vector<std::int64_t>> sessions_of;  // by text
+  for (const results::SessionRow& session : sessions) {
+    if (session.protocol_text) {
+      sessions_of[*session.protocol_text].push_back(session.id);
+    }
+  }
+  std::string words;
+  for (const auto& [text, ids] : sessions_of) {
+    std::vector<std::string> changes;
+    std::ranges::transform(changes_in(protocol, text).texts, std::back_inserter(changes),
+                           [](const protocols::ChangedText& one) { return described(one); });
+    if (!changes.empty()) {
+      words += fmt::format(
+          "In {} of {} sessions (the first is session {}) texts were not those of "
+          "the study's beginning: {}. ",
+          ids.size(), sessions.size(), ids.front(), fmt::join(changes, "; "));
+    }
+  }
+  return words;
+}
+
 // Blocks that no participant started.
 std::string unstarted_blocks(const Protocol& protocol, const DoneBlocks& done) {
   std::vector<std::string> names;
@@ -415,8 +489,10 @@ core::CitingText describe_procedure(const Protocol& protocol,
   const bool are_people = sessions.front().mode != results::Mode::simulated;
   CitingText text = apparatus(sessions) + rendering(protocol, done);
   text += describe_groups(groups, sessions);
+  text += describe_planned_sessions(protocol, sessions, participants);
   text +=
       describe_sequence(protocol, is_by_all ? "Each participant" : "Participants", blocks, groups);
+  text += changed_texts(protocol, sessions);
   text += unstarted_blocks(protocol, done);
   text += explorations(protocol, done);
   if (are_people) {

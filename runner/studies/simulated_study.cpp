@@ -23,6 +23,7 @@
 #include "results/store/recorder.hpp"
 #include "results/store/store.hpp"
 #include "runner/session/devices/rigs.hpp"
+#include "runner/session/engine/open_study.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/engine/trial_engine.hpp"
 #include "runner/session/participants/simulated_participant.hpp"
@@ -42,16 +43,42 @@ ScratchDirectory::~ScratchDirectory() {
 }
 
 namespace {
-struct PlannedSession {
+struct SimulatedSession {
   std::int64_t id{};
-  std::uint64_t seed{};
   protocols::Schedule schedule;
 };
+// One participant's, in order.
+struct SimulatedSessions {
+  std::uint64_t seed{};
+  std::vector<SimulatedSession> sessions;
+};
 
-std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
-                                         const protocols::Protocol& protocol,
-                                         const protocols::Rig& rig, results::Store& store) {
-  std::vector<PlannedSession> sessions;
+// One, or those of the protocol in which the participant has trials.
+SimulatedSessions add_sessions(SessionPlan plan, const protocols::Protocol& protocol,
+                               const protocols::Rig& rig, results::Store& store) {
+  const protocols::Schedule whole = make_schedule(protocol, plan.seed, plan.order_index);
+  SimulatedSessions added{plan.seed, {}};
+  const auto add = [&](const protocols::Schedule& schedule) {
+    results::SessionRow row = session_row(plan, protocol, rig, whole);
+    store.add_session(row);
+    added.sessions.push_back({row.id, schedule});
+  };
+  for (const protocols::PlannedSession& session : protocol.sessions) {
+    plan.planned_session = session.name;
+    if (auto part = trials_of_session(whole, protocol, session.name); !part.empty()) {
+      add(part);
+    }
+  }
+  if (protocol.sessions.empty()) {
+    add(whole);
+  }
+  return added;
+}
+
+std::vector<SimulatedSessions> add_participants(const SimulatedStudy& study,
+                                                const protocols::Protocol& protocol,
+                                                const protocols::Rig& rig, results::Store& store) {
+  std::vector<SimulatedSessions> participants;
   for (int i = 0; i < study.participants; ++i) {
     SessionPlan plan{
         fmt::format("sim-{:02}", i + 1),
@@ -75,17 +102,13 @@ std::vector<PlannedSession> add_sessions(const SimulatedStudy& study,
                       "another --out)",
                       study.directory, plan.participant_id)};
     }
-    PlannedSession session{0, plan.seed, make_schedule(protocol, plan.seed, plan.order_index)};
-    results::SessionRow row = session_row(plan, protocol, rig, session.schedule);
-    store.add_session(row);
-    session.id = row.id;
-    sessions.push_back(std::move(session));
+    participants.push_back(add_sessions(plan, protocol, rig, store));
   }
-  return sessions;
+  return participants;
 }
 
-// A participant who does not get through practice leaves, as a person would.
-void run_participant(TrialEngine& engine, const protocols::Schedule& schedule) {
+// A participant who does not get through practice leaves, as a person would: then false.
+bool run_schedule(TrialEngine& engine, const protocols::Schedule& schedule) {
   std::set<int> done;
   try {
     if (const auto interruption = engine.run(schedule, done)) {
@@ -93,7 +116,9 @@ void run_participant(TrialEngine& engine, const protocols::Schedule& schedule) {
     }
   } catch (const PracticeMissed& missed) {
     warn(missed.what());
+    return false;
   }
+  return true;
 }
 
 struct Tapped {
@@ -109,29 +134,34 @@ struct SharedParts {
   ModelLibrary& models;
 };
 
-void run_session(const SharedParts& shared, const PlannedSession& session,
-                 results::Recorder& recorder, Tapped& tapped) {
+// The same person in every session.
+void run_participant(const SharedParts& shared, const SimulatedSessions& of_participant,
+                     results::Recorder& recorder, Tapped& tapped) {
   const auto& [study, protocol, settings, models] = shared;
-  SimulatedParticipant participant{protocol, settings, models, session.seed};
+  SimulatedParticipant participant{protocol, settings, models, of_participant.seed};
   VirtualTrialLoop trial_loop{participant.hand(), settings,
                               study.keeps_traces ? Keep::trace : Keep::events};
   SimulatedReality reality{protocol, models, participant.hand(), settings};
-  const TrialEngine* running = nullptr;
-  SessionStates states{session.id, [&running, rate_hz = protocol.rate_hz] {
-                         const std::int64_t ticks = running == nullptr ? 0 : running->ticks();
-                         return static_cast<double>(ticks) / rate_hz;
-                       }};
   Operator nobody;
-  TrialEngine engine{
-      {protocol, models, trial_loop, reality, participant, nobody, states, session.seed}, recorder};
-  running = &engine;
-  run_participant(engine, session.schedule);
-  tapped.ticks += engine.ticks();
-  tapped.trials += engine.trials();
+  bool stays = true;
+  for (const SimulatedSession& session : of_participant.sessions) {
+    const TrialEngine* running = nullptr;
+    SessionStates states{session.id, [&running, rate_hz = shared.protocol.rate_hz] {
+                           const std::int64_t ticks = running == nullptr ? 0 : running->ticks();
+                           return static_cast<double>(ticks) / rate_hz;
+                         }};
+    TrialEngine engine{
+        {protocol, models, trial_loop, reality, participant, nobody, states, of_participant.seed},
+        recorder};
+    running = &engine;
+    stays = stays && run_schedule(engine, session.schedule);
+    tapped.ticks += engine.ticks();
+    tapped.trials += engine.trials();
+  }
 }
 
-void run_sessions(const SharedParts& shared, const std::vector<PlannedSession>& sessions,
-                  results::Store& store, Tapped& tapped) {
+void run_participants(const SharedParts& shared, const std::vector<SimulatedSessions>& participants,
+                      results::Store& store, Tapped& tapped) {
   std::optional<Progress> progress;
   if (!shared.study.progress.empty()) {
     progress.emplace(shared.study.progress);
@@ -140,8 +170,8 @@ void run_sessions(const SharedParts& shared, const std::vector<PlannedSession>& 
   // one more than there are processors: each waits while its trial is stored
   const unsigned all = std::max(1U, std::thread::hardware_concurrency()) + 1;
   analysis::parallel_for(
-      sessions.size(), shared.study.threads > 0 ? shared.study.threads : all,
-      [&](std::size_t i) { run_session(shared, sessions[i], recorder, tapped); });
+      participants.size(), shared.study.threads > 0 ? shared.study.threads : all,
+      [&](std::size_t i) { run_participant(shared, participants[i], recorder, tapped); });
 }
 }  // namespace
 
@@ -157,16 +187,15 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   const device::LoopSettings settings = loop_settings(protocol, rig);
   models.build_all(protocol);
   const bool is_new = !results::Store::has_database(study.directory);
-  results::Store store =
-      results::Store::open_or_create(study.directory, study_row(protocol, study.protocol_file));
-  std::vector<PlannedSession> sessions;
-  store.in_one_transaction([&] { sessions = add_sessions(study, protocol, rig, store); });
+  results::Store store = open_study(study.directory, protocol, study.protocol_file);
+  std::vector<SimulatedSessions> participants;
+  store.in_one_transaction([&] { participants = add_participants(study, protocol, rig, store); });
   if (is_new) {
     store.suspend_sync();
   }
   Tapped tapped;
   try {
-    run_sessions({study, protocol, settings, models}, sessions, store, tapped);
+    run_participants({study, protocol, settings, models}, participants, store, tapped);
   } catch (...) {
     store.resume_sync();
     throw;

@@ -152,6 +152,38 @@ void check_groups(Store& store, const Protocol& protocol, CheckedCourse& course)
   }
 }
 
+std::string name_of_session(const std::string& session) {
+  return session.empty() ? "no session of the protocol" : "session " + quoted_name(session);
+}
+
+// Each session is one of the protocol's, no earlier one than the participant's before, and its
+// trials are of that one's blocks.
+void check_planned_sessions(Store& store, const Protocol& protocol, CheckedCourse& course) {
+  std::map<std::int64_t, std::string> planned_of;
+  std::map<std::string, const protocols::PlannedSession*> latest;  // by participant
+  for (const results::SessionRow& session : store.sessions()) {
+    const std::string& planned = planned_of[session.id] = session.planned_session.value_or("");
+    const protocols::PlannedSession* const found = protocol.find_session(planned);
+    if ((found == nullptr) != protocol.sessions.empty()) {
+      course.wrong.push_back(fmt::format("session {}: is stored as {}, which the protocol lacks",
+                                         session.id, name_of_session(planned)));
+    } else if (found < std::exchange(latest[session.participant_id], found)) {
+      course.wrong.push_back(fmt::format("session {}: comes after a later one than {}", session.id,
+                                         name_of_session(planned)));
+    }
+  }
+  store.each_row("SELECT session_id, block, min(trial_id) FROM trial GROUP BY session_id, block",
+                 [&](Statement& row) {
+                   const protocols::Block* const block = protocol.find_block(row.text(1));
+                   if (block != nullptr && block->session != planned_of[row.integer(0)]) {
+                     course.wrong.push_back(
+                         fmt::format("trial {}: its block is of {}, session {} is stored as {}",
+                                     row.integer(2), name_of_session(block->session),
+                                     row.integer(0), name_of_session(planned_of[row.integer(0)])));
+                   }
+                 });
+}
+
 std::optional<SessionState> state_named(const std::string& text) {
   for (int i = 0; i <= static_cast<int>(SessionState::ended); ++i) {
     if (const auto state = static_cast<SessionState>(i); name(state) == text) {
@@ -261,6 +293,7 @@ void check_actions(Store& store, CheckedCourse& course) {
 CheckedCourse checked_course(Store& store, const Protocol& protocol) {
   CheckedCourse course;
   check_groups(store, protocol, course);
+  check_planned_sessions(store, protocol, course);
   check_trials(store, protocol, course);
   check_states(store, course);
   check_actions(store, course);

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <set>
 
 #include "core/error.hpp"
+#include "core/text/plain_text.hpp"
 #include "protocols/protocol.hpp"
 #include "results/journal/journal.hpp"
 #include "results/store/row_rules.hpp"
 #include "results/store_error.hpp"
+#include "runner/session/engine/open_study.hpp"
 #include "runner/session/engine/stored_names.hpp"
 #include "runner/studies/stored_course.hpp"
 #include "runner/studies/stored_study.hpp"
@@ -42,9 +45,31 @@ std::optional<protocols::Protocol> protocol_of(results::Store& store, Lines& rem
   }
 }
 
+// Protocols that differ from the study's in more than texts for people.
+void check_changed_texts(results::Store& store, const protocols::Protocol& protocol,
+                         Lines& broken) {
+  std::set<std::string> seen;
+  for (const results::SessionRow& session : store.sessions()) {
+    if (!session.protocol_text || !seen.insert(*session.protocol_text).second) {
+      continue;
+    }
+    try {
+      const auto changes = changes_in(protocol, *session.protocol_text);
+      if (!changes.data_keys.empty()) {
+        broken.push_back(
+            fmt::format("session {}: its protocol is not the study's but for texts: {} differs",
+                        session.id, core::shortened(changes.data_keys.front(), 60)));
+      }
+    } catch (const core::InvalidInput&) {
+      broken.push_back(fmt::format("session {}: its protocol cannot be read", session.id));
+    }
+  }
+}
+
 void check_by_protocol(results::Store& store, const protocols::Protocol& protocol,
                        Verification& found) {
   std::ranges::move(unknown_names(store, protocol), std::back_inserter(found.broken));
+  check_changed_texts(store, protocol, found.broken);
   CheckedCourse course = checked_course(store, protocol);
   std::ranges::move(course.wrong, std::back_inserter(found.broken));
   std::ranges::move(course.open_sessions, std::back_inserter(found.remarks));

@@ -36,8 +36,9 @@ std::optional<std::string> ending_answer(const protocols::Protocol& protocol,
   return std::nullopt;
 }
 
-BetweenTrials::BetweenTrials(Parts parts, const std::vector<results::FormAnswerRow>& forms)
-    : parts_{std::move(parts)}, filled_{filled_forms(forms)} {
+BetweenTrials::BetweenTrials(Parts parts, const std::vector<results::FormAnswerRow>& forms,
+                             bool comes_again)
+    : parts_{std::move(parts)}, comes_again_{comes_again}, filled_{filled_forms(forms)} {
   for (const results::FormAnswerRow& row : forms) {
     asked_.emplace(row.form, row.asked);
   }
@@ -112,7 +113,9 @@ void BetweenTrials::rest_if_due(const protocols::Block& block) {
 // A session that was interrupted just before its last questionnaires has no trial left.
 void BetweenTrials::after_last_trial(const protocols::Schedule& presented) {
   ask_after_blocks(presented, std::nullopt);
-  ask(parts_.protocol.forms_after, asked_at_end);
+  if (!comes_again_) {
+    ask(parts_.protocol.forms_after, asked_at_end);
+  }
 }
 
 void BetweenTrials::read(const std::string& text, const std::string& whose) {

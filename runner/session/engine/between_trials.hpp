@@ -22,6 +22,7 @@ struct EarlierAnswers {
   std::vector<results::JournalledAnswer> as_given{};  // in that order
   std::map<int, int> attempts{};                      // of each trial, by its number
   std::vector<int> requeued{};                        // trials to come again, the last one last
+  bool comes_again{false};  // for another session: the study's last forms are asked then
 };
 
 // Where forms are asked that come after no block; no block can have these names.
@@ -48,8 +49,9 @@ class BetweenTrials {
     std::function<void(std::vector<results::FormAnswerRow>)> save_form;
     std::function<void()> wait_while_paused;
   };
-  // forms: what was answered in earlier sessions.
-  BetweenTrials(Parts parts, const std::vector<results::FormAnswerRow>& forms);
+  // forms: what was answered in earlier sessions. Who comes again fills in the last forms then.
+  BetweenTrials(Parts parts, const std::vector<results::FormAnswerRow>& forms,
+                bool comes_again = false);
   // All throw Stopped if the participant stops, and TookNoPart after an answer that ends the
   // session.
   void begin(bool has_trials);
@@ -69,6 +71,7 @@ class BetweenTrials {
   void ask(const std::vector<std::string>& forms, const std::string& asked);
   void ask(const protocols::Form& form, const std::string& asked);
   Parts parts_;
+  bool comes_again_;
   std::set<std::pair<std::string, std::string>> asked_;  // forms, and where
   protocols::FilledForms filled_;
   bool has_begun_{false};

@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/files/sha256.hpp"
+#include "core/text/plain_text.hpp"
 #include "results/export/csv_file.hpp"
 #include "runner/build_info/build_info.hpp"
 #include "runner/session/participants/planned_taps.hpp"
@@ -44,8 +45,18 @@ results::SessionRow session_row(const SessionPlan& plan, const protocols::Protoc
   session.program_version = program_version();
   session.git_hash = git_hash();
   session.compiler = compiler();
-  session.started_utc = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+  session.planned_session = plan.planned_session;
+  session.started_utc =
+      fmt::format("{:%FT%TZ}", fmt::gmtime(plan.started.value_or(std::time(nullptr))));
   return session;
+}
+
+std::time_t time_from(const std::string& utc) {
+  std::tm time{};
+  if (strptime(utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &time) == nullptr) {
+    throw core::InvalidInput{fmt::format("{} is no time of a session", core::quoted_name(utc))};
+  }
+  return timegm(&time);
 }
 
 void check_participant_id(const std::string& id) {

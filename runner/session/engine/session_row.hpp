@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <ctime>
 #include <optional>
 #include <string>
 
@@ -23,7 +24,11 @@ struct SessionPlan {
   std::string doctor;      // diagnosis of the machine, JSON
   std::string language{};  // of what the participant reads
   std::optional<results::GroupRow> group{};
+  std::optional<std::string> planned_session{};
+  std::optional<std::time_t> started{};  // unset: now
 };
+// As started_utc of a session has it. Throws InvalidInput where it is no such time.
+std::time_t time_from(const std::string& utc);
 results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,
                                 const protocols::Rig& rig, const protocols::Schedule& schedule);
 

@@ -98,7 +98,7 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
 TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, const Course& course) const {
   const protocols::Block& block = parts_.protocol.block(trial.block);
   return {trial.number,
-          static_cast<int>(course.schedule.size()),
+          course.schedule.back().number,
           progress_at(trial, course.schedule, course.done, parts_.protocol),
           &block,
           trial.task->answers(block, parts_.protocol),

@@ -14,9 +14,9 @@ namespace {
 // As a program makes it that knows no groups.
 void make_without_groups(const std::string& directory) {
   Database database{directory + "/study.db", Database::Access::write};
-  database.run(schema_sql_without_groups());
+  database.run(schema_sql_of(first_schema_version));
   database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", application_id,
-                           schema_version_without_groups));
+                           first_schema_version));
   Statement{database, "INSERT INTO study VALUES (1, ?, ?, ?, ?, '')"}
       .bind(small_study::study.title)
       .bind(small_study::study.protocol_file)
@@ -33,8 +33,10 @@ std::int64_t version_of(const std::string& directory) {
 TEST_CASE("a store from before there were groups is read and goes on as it is",
           "[results][store][groups]") {
   // of the text that programs of that version make their stores by
-  CHECK(core::sha256(schema_sql_without_groups()) ==
+  CHECK(core::sha256(schema_sql_of(first_schema_version)) ==
         "7e77cbb73ce6c7294ccac40232ca5317a3f2b615c31fc0f46dc8cdcbed082e7f");
+  CHECK(core::sha256(schema_sql_of(first_version_with_groups)) ==
+        "6ecb5af0567783bc20ac24202e82238d73133c53422cc2c40c888bd5fda735da");
   const testing::TempDirectory directory;
   make_without_groups(directory.path());
   {
@@ -45,7 +47,7 @@ TEST_CASE("a store from before there were groups is read and goes on as it is",
     grouped.group = GroupRow{"trained"};
     CHECK_THROWS_AS(store.add_session(grouped), StoreError);
   }
-  CHECK(version_of(directory.path()) == schema_version_without_groups);
+  CHECK(version_of(directory.path()) == first_schema_version);
   Store store = Store::open_existing(directory.path());
   REQUIRE(store.sessions().size() == 1);
   CHECK_FALSE(store.sessions().front().group);

@@ -1,0 +1,159 @@
+#include "protocols/yaml/changed_texts.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+namespace tapstudy::protocols {
+namespace {
+struct Leaf {
+  std::string key;
+  std::string value;
+  int line{};
+  // Where it stands is no matter of the data.
+  bool operator==(const Leaf& other) const { return key == other.key && value == other.value; }
+};
+
+// A file as its values in order: those that may enter the data, and texts for people.
+struct Leaves {
+  std::vector<Leaf> data;
+  std::vector<Leaf> texts;
+};
+
+// A stimulus of the name "a.label" has the path of the label of a stimulus "a".
+bool can_be_text(const YAML::Node& node) {
+  return node.IsScalar() ||
+         (node.IsMap() && std::all_of(node.begin(), node.end(), [](const auto& entry) {
+            return entry.first.IsScalar() && is_language(entry.first.Scalar());
+          }));
+}
+
+std::string without_last_newline(std::string text) {
+  if (text.ends_with('\n')) {
+    text.pop_back();
+  }
+  return text;
+}
+
+void add_text(const YAML::Node& node, const std::string& path, InData in_data, Leaves& leaves) {
+  const std::size_t first = leaves.texts.size();
+  if (node.IsScalar()) {
+    leaves.texts.push_back({path, without_last_newline(node.Scalar()), node.Mark().line + 1});
+  } else {
+    for (const auto& entry : node) {
+      leaves.texts.push_back({path + "." + entry.first.Scalar(),
+                              without_last_newline(entry.second.Scalar()),
+                              entry.second.Mark().line + 1});
+    }
+  }
+  if (in_data == InData::first_text) {
+    leaves.data.push_back({path, leaves.texts[first].value});
+  } else if (in_data == InData::presence) {
+    leaves.data.push_back({path, "given"});
+  }
+}
+
+void add(const YAML::Node& node, const std::string& path, const Translations& translations,
+         Leaves& leaves) {
+  const auto text = translations.texts.find(path);
+  if (text != translations.texts.end() && can_be_text(node)) {
+    add_text(node, path, text->second, leaves);
+  } else if (node.IsMap() && node.size() > 0) {
+    for (const auto& entry : node) {
+      const std::string& key = entry.first.Scalar();
+      add(entry.second, path.empty() ? key : path + "." + key, translations, leaves);
+    }
+  } else if (node.IsSequence() && node.size() > 0) {
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      add(node[i], fmt::format("{}[{}]", path, i), translations, leaves);
+    }
+  } else {  // "1" in quotes is another value than 1
+    leaves.data.push_back({path, node.IsScalar() ? node.Tag() + " " + node.Scalar()
+                                 : node.IsMap()  ? "{}"
+                                                 : "[]"});
+  }
+}
+
+Leaves leaves_of(const ReadText& file) {
+  Leaves leaves;
+  add(YAML::Load(file.text), "", file.translations, leaves);
+  return leaves;
+}
+
+std::map<std::string, Leaf> by_key(const std::vector<Leaf>& leaves) {
+  std::map<std::string, Leaf> all;
+  for (const Leaf& leaf : leaves) {
+    all.emplace(leaf.key, leaf);
+  }
+  return all;
+}
+
+// Keys whose values are not in both, then where the order begins to differ.
+std::vector<std::string> differing_keys(const std::vector<Leaf>& before,
+                                        const std::vector<Leaf>& now) {
+  std::vector<std::string> keys;
+  const auto add_missing = [&](const std::vector<Leaf>& from, const std::vector<Leaf>& in) {
+    const std::map<std::string, Leaf> others = by_key(in);
+    for (const Leaf& leaf : from) {
+      const auto other = others.find(leaf.key);
+      if ((other == others.end() || !(other->second == leaf)) &&
+          std::ranges::find(keys, leaf.key) == keys.end()) {
+        keys.push_back(leaf.key);
+      }
+    }
+  };
+  add_missing(now, before);
+  add_missing(before, now);
+  if (keys.empty() && before != now) {
+    const auto [in_before, in_now] = std::ranges::mismatch(before, now);
+    const Leaf& out_of_place = in_now == now.end() ? *in_before : *in_now;
+    keys.push_back(out_of_place.key + " (its place)");
+  }
+  return keys;
+}
+
+// The first line that differs, of each; empty where one of them has no such line.
+std::pair<std::string, std::string> differing_lines(const std::string& before,
+                                                    const std::string& now) {
+  std::istringstream lines_before{before};
+  std::istringstream lines_now{now};
+  std::pair<std::string, std::string> lines;
+  while (lines.first == lines.second && (lines_before || lines_now)) {
+    lines = {};
+    std::getline(lines_before, lines.first);
+    std::getline(lines_now, lines.second);
+  }
+  return lines;
+}
+
+std::vector<ChangedText> changed_texts(const std::vector<Leaf>& before,
+                                       const std::vector<Leaf>& now) {
+  std::vector<ChangedText> changed;
+  const std::map<std::string, Leaf> earlier = by_key(before);
+  for (const Leaf& leaf : now) {
+    const auto found = earlier.find(leaf.key);
+    const std::string was = found == earlier.end() ? "" : found->second.value;
+    if (was != leaf.value) {
+      const auto [line_before, line_now] = differing_lines(was, leaf.value);
+      changed.push_back({leaf.key, line_before, line_now, leaf.line});
+    }
+  }
+  const std::map<std::string, Leaf> later = by_key(now);
+  for (const Leaf& leaf : before) {
+    if (!later.contains(leaf.key)) {
+      changed.push_back({leaf.key, differing_lines(leaf.value, "").first, "", leaf.line});
+    }
+  }
+  return changed;
+}
+}  // namespace
+
+ChangesOfFile changes_between(const ReadText& before, const ReadText& now) {
+  const Leaves earlier = leaves_of(before);
+  const Leaves later = leaves_of(now);
+  return {differing_keys(earlier.data, later.data), changed_texts(earlier.texts, later.texts)};
+}
+}  // namespace tapstudy::protocols

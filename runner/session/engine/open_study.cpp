@@ -1,0 +1,91 @@
+#include "runner/session/engine/open_study.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/text/plain_text.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "runner/session/engine/session_row.hpp"
+#include "runner/terminal/logging.hpp"
+namespace tapstudy::runner {
+using protocols::ChangedText;
+using protocols::ChangesOfFile;
+using protocols::Protocol;
+namespace {
+// A text of the same study, with the surfaces that the study has.
+template <class Surfaces>
+Protocol parsed(const std::string& text, const Surfaces& surfaces) {
+  return protocols::parse_protocol({text, "the study's protocol"}, [&](const std::string& file) {
+    for (const auto& surface : surfaces) {
+      if (surface.file == file) {
+        return surface.bytes;
+      }
+    }
+    throw core::InvalidInput{file + ": is not stored with the study"};
+  });
+}
+
+ChangesOfFile changes(const Protocol& before, const Protocol& now) {
+  return protocols::changes_between({before.text, before.translations},
+                                    {now.text, now.translations});
+}
+
+std::string quoted_text(const std::string& text) {
+  constexpr std::size_t longest = 120;
+  return text.empty() ? "nothing" : "'" + core::shortened(text, longest) + "'";
+}
+
+void refuse_other_data(const std::vector<std::string>& keys, const std::string& directory,
+                       const results::StudyRow& stored) {
+  constexpr std::size_t max_named = 8;
+  const std::size_t named = std::min(keys.size(), max_named);
+  throw core::InvalidInput{fmt::format(
+      "{}: holds the study of another protocol, '{}', from which this one differs in {}{} (choose "
+      "another --out; in a running study, only texts for people may change)",
+      (std::filesystem::path{directory} / "study.db").string(), stored.title,
+      fmt::join(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+      keys.size() > named ? fmt::format(" and {} more keys", keys.size() - named) : "")};
+}
+
+void say_what_changed(const std::vector<ChangedText>& texts) {
+  std::string lines = texts.empty()
+                          ? "the protocol has other comments or another layout"
+                          : "the protocol has other texts than in the session before; they are "
+                            "stored with the sessions from now on:";
+  for (const ChangedText& text : texts) {
+    lines += fmt::format("\n  {} (line {})\n    before: {}\n    now:    {}", text.key,
+                         text.line_now, quoted_text(text.before), quoted_text(text.now));
+  }
+  warn(lines);
+}
+}  // namespace
+
+ChangesOfFile changes_in(const Protocol& of_study, const std::string& later_text) {
+  return changes(of_study, parsed(later_text, of_study.surfaces));
+}
+
+std::string described(const ChangedText& text) {
+  return fmt::format("{} is now {} (before: {})", text.key, quoted_text(text.now),
+                     quoted_text(text.before));
+}
+
+results::Store open_study(const std::string& directory, const Protocol& protocol,
+                          const std::string& protocol_file) {
+  const auto accept = [&](const results::StudyRow& stored, const std::string& latest_text) {
+    const ChangesOfFile since_begin =
+        changes(parsed(stored.protocol_text, stored.surfaces), protocol);
+    if (!since_begin.data_keys.empty()) {
+      refuse_other_data(since_begin.data_keys, directory, stored);
+    }
+    if (latest_text != protocol.text) {
+      say_what_changed(changes(parsed(latest_text, stored.surfaces), protocol).texts);
+    }
+  };
+  return results::Store::open_or_create(directory, study_row(protocol, protocol_file), accept);
+}
+}  // namespace tapstudy::runner

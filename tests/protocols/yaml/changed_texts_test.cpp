@@ -1,0 +1,94 @@
+#include "protocols/yaml/changed_texts.hpp"
+
+#include "protocols/reader/read_protocol.hpp"
+#include "support/blocks.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+std::string every_key_file() {
+  return testing::source("tests/data/every_key.yaml");
+}
+std::string every_key_text() {
+  return testing::contents(every_key_file());
+}
+
+protocols::ChangesOfFile changes(const std::string& before, const std::string& now) {
+  const auto earlier = protocols::parse_protocol(before, every_key_file());
+  const auto later = protocols::parse_protocol(now, every_key_file());
+  return protocols::changes_between({earlier.text, earlier.translations},
+                                    {later.text, later.translations});
+}
+
+struct Change {
+  const char* what;
+  const char* by;
+  const char* key;  // that is told
+};
+}  // namespace
+
+// What people read, and nothing of what is presented, asked for or stored.
+TEST_CASE("wording, labels, instructions, notes and translations are texts, given or not",
+          "[protocols][texts]") {
+  const auto [what, by, key] = GENERATE(
+      Change{"First some practice.", "First, some practice.", "blocks[0].instructions"},
+      Change{"low: guessed", "low: a guess", "blocks[0].confidence.low"},
+      Change{"{en: \"Which material?\", ja", "{en: \"Of what?\", ja", "blocks[1].question.en"},
+      Change{"ja: 木質繊維板", "ja: 木", "blocks[1].response_labels.mdf.ja"},
+      Change{"response_labels: {mdf: {en: wood fibre, ja: 木質繊維板}}\n", "\n",
+             "blocks[1].response_labels.mdf.en"},
+      Change{"{label: first, plate", "{plate", "stimuli.a.label"},
+      Change{"  d:\n", "  d:\n    label: fourth\n", "stimuli.d.label"},
+      Change{"title: The plates", "title: These plates", "forms.rating.title"},
+      Change{"options: [left, right]", "options: [{en: left, de: links}, right]",
+             "forms.about.items[1].options[0].en"},
+      Change{"tie: {en: neither", "tie: {en: no difference", "blocks[12].tie.en"});
+  const auto found = changes(every_key_text(), testing::replaced(every_key_text(), what, by));
+  CHECK(found.data_keys == testing::Names{});
+  REQUIRE_FALSE(found.texts.empty());
+  CHECK(found.texts.front().key == key);
+}
+
+TEST_CASE("what can be answered, presented or stored is data, whatever its words are",
+          "[protocols][texts]") {
+  const auto [what, by, key] = GENERATE(
+      Change{"options: [left, right], ends_session: [left]",
+             "options: [lefty, right], ends_session: [lefty]", "forms.about.items[1].options[0]"},
+      Change{", tie: {en: neither, ja: 同じ}", "", "blocks[12].tie"},
+      Change{"max: 99", "max: 98", "forms.about.items[0].max"},
+      Change{"    repetitions: 2\n", "    repetitions: 3\n", "blocks[0].repetitions"},
+      Change{"stimuli: [b, a]", "stimuli: [a, b]", "blocks[0].stimuli[0]"},
+      Change{"statement: A is more real.", "statement: B is more real.", "hypotheses[0].statement"},
+      Change{"load: {shipped: nasa_tlx}", "load: {shipped: \"nasa_tlx\"}", "forms.load.shipped"});
+  const auto found = changes(every_key_text(), testing::replaced(every_key_text(), what, by));
+  REQUIRE_FALSE(found.data_keys.empty());
+  CHECK(found.data_keys.front() == key);
+}
+
+TEST_CASE("of a text that changed the first line that differs is told, with where it stands",
+          "[protocols][texts]") {
+  const auto with = [](const std::string& instructions) {
+    return testing::text_with_blocks({"test"}, "instructions: |\n  Tap.\n  " + instructions + "\n");
+  };
+  const std::string before = with("Then answer.");
+  const std::string now = with("Then choose.");
+  const auto found =
+      changes(testing::replaced(before, "\ninstructions:", "\n# a comment\n\ninstructions:"),
+              testing::replaced(now, "question: \"Which?\"", "question: 'Which?'"));
+  CHECK(found.data_keys == testing::Names{});
+  REQUIRE(found.texts.size() == 1);
+  CHECK(found.texts[0].before == "Then answer.");
+  CHECK(found.texts[0].now == "Then choose.");
+  const std::string up_to = now.substr(0, now.find("instructions: |"));
+  CHECK(found.texts[0].line_now == 1 + std::count(up_to.begin(), up_to.end(), '\n'));
+}
+
+// A name may hold points, so that what it is of has the path of another's text.
+TEST_CASE("a stimulus whose name ends in a key of texts is data", "[protocols][texts]") {
+  const auto with = [](const std::string& material) {
+    return testing::replaced(every_key_text(), "  d:\n",
+                             "  a.label: {plate: screwed, material: " + material +
+                                 ", technique: fem, factors: {material: mdf}}\n  d:\n");
+  };
+  CHECK(changes(with("mdf"), with("oak")).data_keys == testing::Names{"stimuli.a.label.material"});
+}

@@ -24,7 +24,7 @@ constexpr const char* days =
 constexpr std::time_t hour = 3600;
 
 // Of one participant, at a time that the test sets.
-class Laboratory {
+class VisitedLaboratory {
  public:
   runner::BegunSession begin(runner::Resume resume = runner::Resume::no, bool at_any_time = false) {
     runner::SessionRequest request;
@@ -58,7 +58,7 @@ class Laboratory {
 
 TEST_CASE("who has done a session does the next, of the same order, and then no more",
           "[runner][days]") {
-  Laboratory laboratory;
+  VisitedLaboratory laboratory;
   const auto first = laboratory.begin();
   laboratory.complete(first);
   laboratory.now += 24 * hour;
@@ -93,7 +93,7 @@ TEST_CASE("who has done a session does the next, of the same order, and then no 
 }
 
 TEST_CASE("a session that is not done is gone on with, never passed over", "[runner][days]") {
-  Laboratory laboratory;
+  VisitedLaboratory laboratory;
   laboratory.complete(laboratory.begin());
   laboratory.now += 24 * hour;
   const auto begun = laboratory.begin();
@@ -111,7 +111,7 @@ TEST_CASE("a session that is not done is gone on with, never passed over", "[run
 }
 
 TEST_CASE("too early or too late is refused with when it may be, or noted", "[runner][days]") {
-  Laboratory laboratory;
+  VisitedLaboratory laboratory;
   laboratory.complete(laboratory.begin());
   const std::time_t began = laboratory.now;
   const auto [seconds, refusal] = GENERATE(

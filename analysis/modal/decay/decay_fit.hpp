@@ -17,9 +17,9 @@ inline constexpr double settled_fit = 1e-7;
 
 // Variable projection (Golub & Pereyra 1973, Kaufman's approximation) with Levenberg-Marquardt
 // steps on the poles until a step lowers the weighted sum of squares by no more than this share;
-// true if it came to that. The first
-// `shared` poles of all decays are the same and remain so; what each decay has of its own is
-// eliminated from the normal equations decay by decay (Schur complement).
+// true if it came to that. The first `shared` poles of all decays are the same and remain so; what
+// each decay has of its own is eliminated from the normal equations decay by decay (Schur
+// complement).
 bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared, double settled_share);
 
 // The Fisher information of the shared poles' Re s and Im s [1/s], everything else unknown, too.
@@ -59,11 +59,10 @@ struct DecayFit {
 // fitted.
 void set_residual(const DecayModel& model, const DecayModel::State& state, DecayFit& fit);
 
-// Maximum likelihood in white noise from these poles on (descend, decay_model.hpp).
-// A
-// larger settled_share gives a rough fit. Standard errors are those of the Cramer-Rao bound, with
-// the noise of the residual. Steady lines of these frequencies, such as hum, take part with
-// amplitudes alone. Throws InvalidInput for more unknowns than values.
+// Maximum likelihood in white noise from these poles on (descend, decay_model.hpp). A larger
+// settled_share gives a rough fit. Standard errors are those of the Cramer-Rao bound, with the
+// noise of the residual. Steady lines of these frequencies, such as hum, take part with amplitudes
+// alone. Throws InvalidInput for more unknowns than values.
 DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start,
                    const std::vector<double>& lines_hz = {}, double settled_share = settled_fit);
 

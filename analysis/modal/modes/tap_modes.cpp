@@ -85,6 +85,24 @@ std::vector<Pole> poles_of(const std::vector<Candidate>& candidates) {
   return poles;
 }
 
+// Without those to drop; the others as they were fitted.
+std::vector<Candidate> kept_of(const std::vector<Candidate>& candidates,
+                               const std::vector<std::size_t>& drop, const DecayFit& fit,
+                               const Band& band) {
+  std::vector<Candidate> kept;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (std::ranges::find(drop, i) != drop.end()) {
+      continue;
+    }
+    kept.push_back(candidates[i]);
+    const Pole& moved = fit.modes[i].pole;
+    if (band.holds(moved.frequency_hz) && std::abs(moved.damping_ratio) < max_ratio) {
+      kept.back().pole = moved;  // one that went astray starts again where it was found
+    }
+  }
+  return kept;
+}
+
 // Fits, drops what is weak, and again, until all are significant. What is weak shows long before a
 // fit has settled to the last digit.
 DecayFit fit_significant(const BandSpectrum& spectrum, const Band& band,
@@ -98,17 +116,7 @@ DecayFit fit_significant(const BandSpectrum& spectrum, const Band& band,
       return fit;
     }
     settled_share = drop.empty() ? settled_fit : rough_share;
-    std::vector<Candidate> kept;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (std::ranges::find(drop, i) == drop.end()) {
-        kept.push_back(candidates[i]);
-        const Pole& moved = fit.modes[i].pole;
-        if (band.holds(moved.frequency_hz) && std::abs(moved.damping_ratio) < max_ratio) {
-          kept.back().pole = moved;  // one that went astray starts again where it was found
-        }
-      }
-    }
-    candidates = std::move(kept);
+    candidates = kept_of(candidates, drop, fit, band);
   }
 }
 

@@ -399,6 +399,21 @@ ReportTable models_table(const DiscriminationResults& results) {
   return table;
 }
 
+std::string remark_on_model(const BlockDesign& design, const DiscriminationResults& results) {
+  if (results.model != nullptr) {
+    return fmt::format(
+        "d' by the decision model '{}' ({}), interval by that of the proportion; over participants "
+        "that of their mean proportion and of its interval.",
+        results.model->name, results.model->summary);
+  }
+  return are_same_presented(results.participants)
+             ? "Stimuli change from trial to trial, so that participants compare the two: take d' "
+               "of a differencing observer, by hits and false alarms."
+             : fmt::format(
+                   "There is no d': no decision model is known for {} with a chance of {:.3g}.",
+                   design.task, design.guess_rate);
+}
+
 std::vector<CitingText> remarks_on(const BlockDesign& design,
                                    const DiscriminationResults& results) {
   if (results.participants.empty()) {
@@ -423,20 +438,7 @@ std::vector<CitingText> remarks_on(const BlockDesign& design,
   if (!design.premise.empty()) {
     remarks.push_back("Not tested: " + design.premise);
   }
-  if (results.model != nullptr) {
-    remarks.push_back(fmt::format(
-        "d' by the decision model '{}' ({}), interval by that of the proportion; over participants "
-        "that of their mean proportion and of its interval.",
-        results.model->name, results.model->summary));
-  } else if (are_same_presented(results.participants)) {
-    remarks.emplace_back(
-        "Stimuli change from trial to trial, so that participants compare the two: take d' of a "
-        "differencing observer, by hits and false alarms.");
-  } else {
-    remarks.push_back(
-        fmt::format("There is no d': no decision model is known for {} with a chance of {:.3g}.",
-                    design.task, design.guess_rate));
-  }
+  remarks.emplace_back(remark_on_model(design, results));
   if (results.model != nullptr && results.pairs.size() > 1) {
     remarks.emplace_back(
         "d' is of all pairs of stimuli together: of none of them, where some are told apart better "

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
-
+#include <utility>
+#include <vector>
 namespace tapstudy::protocols {
 namespace {
 struct Leaf {
@@ -56,24 +57,43 @@ void add_text(const YAML::Node& node, const std::string& path, InData in_data, L
   }
 }
 
+std::vector<std::pair<std::string, YAML::Node>> children_of(const YAML::Node& node,
+                                                            const std::string& path) {
+  std::vector<std::pair<std::string, YAML::Node>> children;
+  if (node.IsMap()) {
+    for (const auto& entry : node) {
+      const std::string& key = entry.first.Scalar();
+      children.emplace_back(path.empty() ? key : path + "." + key, entry.second);
+    }
+  } else if (node.IsSequence()) {
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      children.emplace_back(fmt::format("{}[{}]", path, i), node[i]);
+    }
+  }
+  return children;
+}
+
+// "1" in quotes is another value than 1.
+std::string value_of(const YAML::Node& node) {
+  if (node.IsScalar()) {
+    return node.Tag() + " " + node.Scalar();
+  }
+  return node.IsMap() ? "{}" : "[]";
+}
+
 void add(const YAML::Node& node, const std::string& path, const Translations& translations,
          Leaves& leaves) {
   const auto text = translations.texts.find(path);
   if (text != translations.texts.end() && can_be_text(node)) {
     add_text(node, path, text->second, leaves);
-  } else if (node.IsMap() && node.size() > 0) {
-    for (const auto& entry : node) {
-      const std::string& key = entry.first.Scalar();
-      add(entry.second, path.empty() ? key : path + "." + key, translations, leaves);
-    }
-  } else if (node.IsSequence() && node.size() > 0) {
-    for (std::size_t i = 0; i < node.size(); ++i) {
-      add(node[i], fmt::format("{}[{}]", path, i), translations, leaves);
-    }
-  } else {  // "1" in quotes is another value than 1
-    leaves.data.push_back({path, node.IsScalar() ? node.Tag() + " " + node.Scalar()
-                                 : node.IsMap()  ? "{}"
-                                                 : "[]"});
+    return;
+  }
+  const auto children = children_of(node, path);
+  for (const auto& [child_path, child] : children) {
+    add(child, child_path, translations, leaves);
+  }
+  if (children.empty()) {
+    leaves.data.push_back({path, value_of(node)});
   }
 }
 

@@ -171,6 +171,7 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
     session.done.insert(trials.begin(), trials.end());
   }
 }
+
 // Where the protocol has sessions: which of them it is. Only its trials are left then.
 void take_up_session(const SessionRequest& request, const protocols::Protocol& protocol,
                      const std::optional<results::SessionRow>& earlier, BegunSession& session) {
@@ -208,6 +209,19 @@ void take_up_session(const SessionRequest& request, const protocols::Protocol& p
     return is_of_another(answer.trial.number);
   });
 }
+
+void add_note(const BegunSession& session, results::Store& store) {
+  if (!session.note.empty()) {
+    store.add_operator_action(
+        {session.row.id, 0.0, std::string{name(OperatorAction::note)}, {}, session.note});
+  }
+}
+
+protocols::Schedule schedule_of(const SessionPlan& plan, const protocols::Protocol& protocol,
+                                const std::optional<results::SessionRow>& earlier) {
+  return earlier ? make_schedule(protocol, plan.seed, plan.order_index, earlier->planned_order)
+                 : make_schedule(protocol, plan.seed, plan.order_index);
+}
 }  // namespace
 
 BegunSession begin_session(const SessionRequest& request, const protocols::Protocol& protocol,
@@ -238,9 +252,7 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
     plan.group = earlier ? earlier->group : group_row(protocol, plan.order_index, asked);
     plan.language = request.language;
     plan.seed = earlier ? earlier->seed : request.seed ? *request.seed : drawn_seed();
-    session.schedule =
-        earlier ? make_schedule(protocol, plan.seed, plan.order_index, earlier->planned_order)
-                : make_schedule(protocol, plan.seed, plan.order_index);
+    session.schedule = schedule_of(plan, protocol, earlier);
     plan.started = request.now();
     session.row = session_row(plan, protocol, rig, session.schedule);
     if (earlier) {
@@ -249,10 +261,7 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
     take_up_session(request, protocol, earlier, session);
     store.add_session(session.row);
   });
-  if (!session.note.empty()) {
-    store.add_operator_action(
-        {session.row.id, 0.0, std::string{name(OperatorAction::note)}, {}, session.note});
-  }
+  add_note(session, store);
   return session;
 }
 

@@ -17,6 +17,7 @@
 #include "analysis/report/study/groups.hpp"
 #include "analysis/report/study/rendered.hpp"
 #include "core/error.hpp"
+#include "core/model/fixation.hpp"
 #include "core/random/rng.hpp"
 #include "core/techniques/technique.hpp"
 #include "core/text/plain_text.hpp"
@@ -414,32 +415,77 @@ void check_different_participants(const std::vector<StudyStore>& stores) {
     }
   }
 }
-}  // namespace
 
-std::vector<std::string> rendered_by_earlier_versions(
-    const protocols::Protocol& protocol, const std::vector<results::SessionRow>& sessions) {
+// Of the sessions, those before major.minor.
+std::set<std::string> versions_before(int major, int minor,
+                                      const std::vector<results::SessionRow>& sessions) {
   std::set<std::string> versions;
   for (const results::SessionRow& session : sessions) {
-    if (is_before(session.program_version, 0, 2)) {
+    if (is_before(session.program_version, major, minor)) {
       versions.insert(session.program_version);
     }
   }
+  return versions;
+}
+
+// Empty: nothing was otherwise.
+std::string coupled_fingers_before(const protocols::Protocol& protocol,
+                                   const std::vector<results::SessionRow>& sessions) {
+  const std::set<std::string> versions = versions_before(0, 2, sessions);
   const auto coupled = std::ranges::find_if(protocol.stimuli, [](const auto& stimulus) {
     return stimulus.technique->has(core::coupled_vibration);
   });
   if (versions.empty() || coupled == protocol.stimuli.end()) {
-    return {};
+    return "";
   }
   const double contact = protocol.rendering.penalty_stiffness_n_per_m;
   const double finger = protocol.rendering.finger.stiffness_n_per_m;
   const double in_series = contact * finger / (contact + finger);
-  return {fmt::format(
+  return fmt::format(
       "sessions run by tapstudy {}: {} pressed slowly was stiffer than techniques without a "
       "coupled finger ({:.4g} N/m instead of {:.4g} with the protocol's own values), and the plate "
       "carried {:.0f} % of the force that the hand felt; from 0.2.0 on all techniques are equally "
       "stiff at rest, and it carries all of it",
       fmt::join(versions, ", "), coupled->technique->name, contact + in_series, contact,
-      100.0 * in_series / (contact + in_series))};
+      100.0 * in_series / (contact + in_series));
+}
+
+bool is_on_springs(const protocols::Stimulus& stimulus) {
+  const auto has_springs = [](const core::Plate& body) {
+    return core::is_on_springs(body.fixations);
+  };
+  return stimulus.technique->needs_model() &&
+         (has_springs(*stimulus.plate) ||
+          (stimulus.contacts && (!stimulus.contacts->springs.empty() ||
+                                 std::ranges::any_of(stimulus.contacts->bodies, has_springs))));
+}
+
+std::string springs_before(const protocols::Protocol& protocol,
+                           const std::vector<results::SessionRow>& sessions) {
+  const std::set<std::string> versions = versions_before(0, 4, sessions);
+  std::vector<std::string> names;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (is_on_springs(stimulus)) {
+      names.push_back(stimulus.name);
+    }
+  }
+  return versions.empty() || names.empty()
+             ? ""
+             : fmt::format(
+                   "sessions run by tapstudy {}: springs under {} held parts of triangles where a "
+                   "region's edge cuts through them, so that frequencies may have been some per "
+                   "cent higher; from 0.4.0 on they hold the nodes that a rigid fixation of the "
+                   "region holds",
+                   fmt::join(versions, ", "), fmt::join(names, ", "));
+}
+}  // namespace
+
+std::vector<std::string> rendered_by_earlier_versions(
+    const protocols::Protocol& protocol, const std::vector<results::SessionRow>& sessions) {
+  std::vector<std::string> said{coupled_fingers_before(protocol, sessions),
+                                springs_before(protocol, sessions)};
+  std::erase(said, "");
+  return said;
 }
 
 namespace {

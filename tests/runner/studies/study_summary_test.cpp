@@ -31,3 +31,16 @@ TEST_CASE("a report says what earlier versions rendered otherwise, of the studie
   CHECK(said_of("fem-coupled", {"0.2.0", "0.10.0", "1.0.0", "of the future"}).empty());
   CHECK(said_of("fem", {"0.1.0"}).empty());
 }
+
+TEST_CASE("a report says that earlier versions held springs otherwise, of plates on springs",
+          "[runner][report]") {
+  const auto said_of_feet = [](const std::string& version) {
+    std::vector<results::SessionRow> sessions(1);
+    sessions.front().program_version = version;
+    return runner::rendered_by_earlier_versions(
+        protocols::read_protocol(testing::shipped("examples/plate_on_feet.yaml")), sessions);
+  };
+  REQUIRE(said_of_feet("0.3.0").size() == 1);
+  CHECK_THAT(said_of_feet("0.3.0").front(), Contains("sessions run by tapstudy 0.3.0: springs"));
+  CHECK(said_of_feet("0.4.0").empty());
+}

@@ -29,7 +29,7 @@ section>h3{font-size:1.1rem}section .data~h3,section>h3~h3{font-size:1rem;border
 .provenance td{word-break:break-all}.notes{white-space:pre-line}
 @media (max-width:600px){.accuracy td{white-space:normal;padding-right:.5rem}.accuracy th{padding-right:.5rem;overflow-wrap:anywhere}.accuracy th[scope=row]{min-width:5.5rem}.accuracy thead th{overflow-wrap:normal}
   .dot{width:72px}.data thead{display:none}.data,.data tbody,.data tr,.data tbody th,.data td{display:block}.data tbody th,.data td,.data td.text{white-space:normal;max-width:none;padding:.1rem 0;overflow-wrap:anywhere}
-  .data tbody th{font-weight:500;text-align:left;margin-top:.5rem}.data td{display:flex;justify-content:space-between;gap:1rem}.data td::before{content:attr(data-heading);color:#567;text-align:left}
+  .data tbody th{font-weight:500;text-align:left;margin-top:.5rem}.data td{display:flex;justify-content:space-between;gap:1rem}.data td::before{content:attr(data-heading);color:#567;text-align:left;overflow-wrap:break-word}
   .matrix td{width:auto;min-width:2.4rem;height:2.6rem}.matrix td b{font-size:1rem}.matrix td span{font-size:.7rem}.matrix th{padding:.2rem .1rem;font-size:.65rem;overflow-wrap:anywhere}.matrix .total{width:auto}h1{font-size:1.3rem}}
 @media screen and (prefers-color-scheme:dark){:root{color-scheme:dark}body{background:#14191f;color:#dde5ec}
   .simulated{background:#4a3a08;border-color:#d39e00}caption,figcaption,.matrix .total,.note,.provenance,.data td::before{color:#9fb0bf}

@@ -197,7 +197,7 @@ TEST_CASE("a rig that asks for more than its device can do, by its own words, is
 }
 
 TEST_CASE("a session runs on a device that another program drives, and can be replayed",
-          "[end_to_end][threads]") {
+          "[end_to_end][threads][waits]") {
   const TempDirectory directory;
   const std::uint16_t port = testing::free_port();
   const testing::ExampleBridge bridge{port};

@@ -83,7 +83,9 @@ TEST_CASE("a body turned together with its material's axes keeps its frequencies
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd{1.1, Eigen::Vector3d{1.0, -2.0, 0.5}.normalized()}.toRotationMatrix();
   mesh.nodes_m = (mesh.nodes_m * turn.transpose()).eval();
-  CHECK_FALSE(frequencies(material).isApprox(before, 1e-3));
+  const Eigen::ArrayXd across_the_grain = frequencies(material);
+  CHECK_FALSE(
+      (across_the_grain.size() == before.size() && across_the_grain.isApprox(before, 1e-3)));
   material.orthotropy->rotation_rad =
       turn_of(turn * core::rotation(material.orthotropy->rotation_rad));
   CHECK(frequencies(material).isApprox(before, 1e-8));

@@ -34,11 +34,6 @@ function(optimise_cgal_lightly)
   endforeach()
 endfunction()
 
-# What the sanitizers watch is built once and run once: where this is set, only the libraries that compute
-# for long are optimised, and the others are compiled in two thirds of the time.
-set(TAPSTUDY_NUMERICAL_FLAGS "" CACHE STRING "Further flags of the numerical libraries")
-set(numerical_libraries core analysis_statistics analysis_modal)
-
 function(tapstudy_library name)
   cmake_parse_arguments(ARG "" "" "LINK;PRIVATE" ${ARGN})
   string(REGEX REPLACE "^(analysis|runner)_" "\\1/" folder ${name})
@@ -52,16 +47,10 @@ function(tapstudy_library name)
   target_include_directories(tapstudy_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(tapstudy_${name} PUBLIC ${ARG_LINK}
     PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:tapstudy_flags>)
-  # What nearly every source includes, compiled once for all that have the same flags: by the first of them.
-  set(first core)
-  if(name IN_LIST numerical_libraries)
-    target_compile_options(tapstudy_${name} PRIVATE ${TAPSTUDY_NUMERICAL_FLAGS})
-  elseif(TAPSTUDY_NUMERICAL_FLAGS)
-    set(first device)
-  endif()
-  if(name STREQUAL first)
-    target_precompile_headers(tapstudy_${name} PRIVATE <Eigen/Core> <fmt/format.h> <fmt/ranges.h>)
+  # What nearly every source includes, compiled once and for all of them.
+  if(name STREQUAL "core")
+    target_precompile_headers(tapstudy_core PRIVATE <Eigen/Core> <fmt/format.h> <fmt/ranges.h>)
   else()
-    target_precompile_headers(tapstudy_${name} REUSE_FROM tapstudy_${first})
+    target_precompile_headers(tapstudy_${name} REUSE_FROM tapstudy_core)
   endif()
 endfunction()

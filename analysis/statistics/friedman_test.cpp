@@ -82,12 +82,8 @@ double random_sum_of_squares(std::vector<Ranks> people, std::uint64_t seed) {
   return sum_of_squares(sums);
 }
 
-void add_p(const std::vector<Ranks>& people, std::uint64_t seed, FriedmanTest& test) {
-  Ranks sums(people.front().size(), 0);
-  for (const Ranks& ranks : people) {
-    add_to(sums, ranks);
-  }
-  const double observed = sum_of_squares(sums);
+void add_p(const std::vector<Ranks>& people, double observed, std::uint64_t seed,
+           FriedmanTest& test) {
   const auto distribution = distribution_of_sums(people);
   test.is_exact = distribution.has_value();
   if (!distribution) {
@@ -109,30 +105,27 @@ FriedmanTest friedman_test(const RatingTable& ratings, std::uint64_t seed) {
   check_ratings(ratings);
   const auto n = static_cast<double>(ratings.size());
   const auto k = static_cast<double>(ratings.front().size());
-  FriedmanTest test;
-  test.mean_ranks.assign(ratings.front().size(), 0.0);
   std::vector<Ranks> people;
+  Ranks sums(ratings.front().size(), 0);
   double ties = 0.0;
   for (const std::vector<double>& row : ratings) {
-    const std::vector<double> ranks = mid_ranks(row);
-    for (std::size_t j = 0; j < ranks.size(); ++j) {
-      test.mean_ranks[j] += ranks[j] / n;
-    }
-    ties += tie_sum(row);
     people.push_back(doubled_ranks(row));
-  }
-  double squares = 0.0;
-  for (const double mean_rank : test.mean_ranks) {
-    squares += n * n * (mean_rank - 0.5 * (k + 1.0)) * (mean_rank - 0.5 * (k + 1.0));
+    add_to(sums, people.back());
+    ties += tie_sum(row);
   }
   const double spread = n * k * (k + 1.0) - ties / (k - 1.0);
   if (!(spread > 1e-9)) {
     throw core::NotEstimable{"every participant rates all conditions the same: nothing to test"};
   }
-  test.chi_squared = 12.0 * squares / spread;
+  FriedmanTest test;
+  for (const int sum : sums) {
+    test.mean_ranks.push_back(0.5 * (sum / n + k + 1.0));
+  }
+  const double squares = sum_of_squares(sums);  // of twice the deviations
+  test.chi_squared = 3.0 * squares / spread;
   test.degrees_of_freedom = k - 1.0;
   test.kendalls_w = test.chi_squared / (n * (k - 1.0));
-  add_p(people, seed, test);
+  add_p(people, squares, seed, test);
   return test;
 }
 }  // namespace tapstudy::analysis

@@ -96,31 +96,27 @@ void Store::in_one_transaction(const std::function<void()>& act) {
   journal_sessions();
 }
 
-bool Store::has_groups() {
-  if (!has_columns_of_groups()) {
-    return false;
-  }
-  Statement row{database_, "SELECT count(group_name) FROM participant"};
+namespace {
+bool counts_any(Database& database, const char* select_count) {
+  Statement row{database, select_count};
   row.step();
   return row.integer(0) > 0;
+}
+}  // namespace
+
+bool Store::has_groups() {
+  return has_columns_of_groups() &&
+         counts_any(database_, "SELECT count(group_name) FROM participant");
 }
 
 bool Store::has_planned_sessions() {
-  if (!has_columns_of_planned_sessions()) {
-    return false;
-  }
-  Statement row{database_, "SELECT count(planned_session) FROM session"};
-  row.step();
-  return row.integer(0) > 0;
+  return has_columns_of_planned_sessions() &&
+         counts_any(database_, "SELECT count(planned_session) FROM session");
 }
 
 bool Store::has_changed_texts() {
-  if (!has_columns_of_planned_sessions()) {
-    return false;
-  }
-  Statement row{database_, "SELECT count(protocol_text) FROM session"};
-  row.step();
-  return row.integer(0) > 0;
+  return has_columns_of_planned_sessions() &&
+         counts_any(database_, "SELECT count(protocol_text) FROM session");
 }
 
 void Store::add_participant(const SessionRow& session) {

@@ -45,10 +45,6 @@ class DhdDevice final : public bridge::Device {
     dhdEnableForce(DHD_OFF, id());
     dhdClose(id());
   }
-  DhdDevice(const DhdDevice&) = delete;
-  DhdDevice& operator=(const DhdDevice&) = delete;
-  DhdDevice(DhdDevice&&) = delete;
-  DhdDevice& operator=(DhdDevice&&) = delete;
 
   bridge::wire::Introduction introduction() override {
     bridge::wire::Introduction told;

@@ -49,10 +49,6 @@ class OpenHapticsDevice final : public bridge::Device {
     hdStopScheduler();
     hdDisableDevice(id_);
   }
-  OpenHapticsDevice(const OpenHapticsDevice&) = delete;
-  OpenHapticsDevice& operator=(const OpenHapticsDevice&) = delete;
-  OpenHapticsDevice(OpenHapticsDevice&&) = delete;
-  OpenHapticsDevice& operator=(OpenHapticsDevice&&) = delete;
 
   bridge::wire::Introduction introduction() override {
     bridge::wire::Introduction told;

@@ -66,10 +66,6 @@ class SerialBoard final : public bridge::Device {
     }
   }
   ~SerialBoard() override { close(port_); }
-  SerialBoard(const SerialBoard&) = delete;
-  SerialBoard& operator=(const SerialBoard&) = delete;
-  SerialBoard(SerialBoard&&) = delete;
-  SerialBoard& operator=(SerialBoard&&) = delete;
 
   bridge::wire::Introduction introduction() override { return told_; }
   void exert(const bridge::wire::Vector& force_n) override {

@@ -42,7 +42,12 @@ inline double seconds_since(Clock::time_point then) {
 // The device behind a bridge.
 class Device {
  public:
+  Device() = default;
   virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  Device(Device&&) = delete;
+  Device& operator=(Device&&) = delete;
   virtual wire::Introduction introduction() = 0;
   // Finite, and at most the maximum force of the introduction.
   virtual void exert(const wire::Vector& force_n) = 0;

@@ -22,6 +22,16 @@ bool has_open_trials(const PlannedSession& session, const protocols::Protocol& p
   });
 }
 
+// Of whose trials in the schedule some are not done; nullptr: there is none.
+const PlannedSession* first_open_session(const protocols::Protocol& protocol,
+                                         const protocols::Schedule& schedule,
+                                         const std::set<int>& done) {
+  const auto open = std::ranges::find_if(protocol.sessions, [&](const PlannedSession& session) {
+    return has_open_trials(session, protocol, schedule, done);
+  });
+  return open == protocol.sessions.end() ? nullptr : &*open;
+}
+
 // Of a time: in hours up to three days, then in days.
 std::string described_time(double seconds) {
   const double hours = seconds / seconds_per_hour;
@@ -33,15 +43,6 @@ std::string utc(std::time_t began, double later_s) {
   return fmt::format("{:%F %R} UTC", fmt::gmtime(began + static_cast<std::time_t>(later_s)));
 }
 }  // namespace
-
-const PlannedSession* first_open_session(const protocols::Protocol& protocol,
-                                         const protocols::Schedule& schedule,
-                                         const std::set<int>& done) {
-  const auto open = std::ranges::find_if(protocol.sessions, [&](const PlannedSession& session) {
-    return has_open_trials(session, protocol, schedule, done);
-  });
-  return open == protocol.sessions.end() ? nullptr : &*open;
-}
 
 bool comes_again(const PlannedSession& session, const protocols::Protocol& protocol,
                  const protocols::Schedule& schedule) {

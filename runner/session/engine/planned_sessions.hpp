@@ -8,12 +8,6 @@
 #include "protocols/schedule/schedule.hpp"
 #include "results/rows.hpp"
 namespace tapstudy::runner {
-// The first of the protocol's sessions of whose trials in the schedule some are not done; nullptr:
-// there is none.
-const protocols::PlannedSession* first_open_session(const protocols::Protocol& protocol,
-                                                    const protocols::Schedule& schedule,
-                                                    const std::set<int>& done);
-
 // Whether a later session has trials in the schedule.
 bool comes_again(const protocols::PlannedSession& session, const protocols::Protocol& protocol,
                  const protocols::Schedule& schedule);

@@ -146,8 +146,7 @@ using P = PresentedStimulus;
 constexpr std::array table{
     Axis{"youngs_modulus_pa", "Young's modulus", "Pa",
          "Young's modulus, of an orthotropic material along its first axis, the others and the "
-         "shear "
-         "moduli in proportion; for techniques with the plate's vibration",
+         "shear moduli in proportion; for techniques with the plate's vibration",
          AxisKind::scaled, vibrates, false, true, constant<allowed::youngs_modulus_pa>,
          allowed::youngs_modulus_pa,
          [](const P& stimulus) { return stimulus.material->youngs_modulus_pa; },

@@ -78,8 +78,11 @@ class Inverse3 final : public bridge::Device {
   }
   void exert(const bridge::wire::Vector& force_n) override {
     force_n_ = force_n;
-    // A zero force does not wait for the service's next state.
-    if (force_n == bridge::wire::Vector{} || states_awaited_ == 0) {
+    // Letting go does not wait for the service's next state. Once: were each zero force sent, states
+    // would queue at a service that sends the next one when the last is acknowledged, and never be
+    // young again.
+    const bridge::wire::Vector zero{};
+    if (states_awaited_ == 0 || (force_n == zero && force_sent_n_ != zero)) {
       send_force();
     }
     run();
@@ -127,6 +130,7 @@ class Inverse3 final : public bridge::Device {
     is_sending_ = true;
     is_changed_ = false;
     ++states_awaited_;
+    force_sent_n_ = force_n_;
     const Json force{{"set_cursor_force", {{"values", to_service(force_n_)}}}};
     sent_ = Json{{"inverse3", Json::array({{{"device_id", id_}, {"commands", force}}})}}.dump();
     service_.async_write(boost::asio::buffer(sent_), [this](const Error& error, std::size_t) {
@@ -185,6 +189,7 @@ class Inverse3 final : public bridge::Device {
   bool is_changed_ = false;
   int states_awaited_ = 0;
   bridge::wire::Vector force_n_{};
+  bridge::wire::Vector force_sent_n_{};
   bridge::wire::Reply newest_;
   bridge::Clock::time_point taken_at_{};
 };

@@ -30,17 +30,6 @@ bool are_comparable(const BlockSummary& first, const BlockSummary& second) {
          first.personal->measure == second.personal->measure;
 }
 
-std::set<std::string> participants_of(const PersonalValues& values) {
-  std::set<std::string> all = values.participants;
-  for (const auto& [participant, value] : values.by_participant) {
-    all.insert(participant);
-  }
-  for (const auto& [participant, range] : values.beyond) {
-    all.insert(participant);
-  }
-  return all;
-}
-
 // Unset where nothing is known of the participant's value.
 std::optional<Interval> range_of(const PersonalValues& values, const std::string& participant) {
   const auto scaled = [&](double value) { return values.is_ratio ? std::log(value) : value; };
@@ -78,12 +67,6 @@ PairedContrast contrast_of(const std::vector<Interval>& differences) {
                                             : censored_contrast(differences, contrasts_seed);
 }
 
-int number_in_both(const PersonalValues& first, const PersonalValues& second) {
-  const std::set<std::string> others = participants_of(second);
-  return static_cast<int>(std::ranges::count_if(
-      participants_of(first), [&](const std::string& one) { return others.contains(one); }));
-}
-
 // By the measure, in the order of the blocks.
 std::map<std::string, std::vector<Contrast>> contrasts_of(
     const std::vector<std::shared_ptr<const BlockSummary>>& blocks) {
@@ -105,16 +88,6 @@ std::map<std::string, std::vector<Contrast>> contrasts_of(
   return contrasts;
 }
 
-Cell compared_people(const Contrast& contrast) {
-  const int compared = contrast.result.participants;
-  Cell cell = count(compared);
-  cell.values.emplace_back(contrast.in_both);
-  if (compared < contrast.in_both) {
-    cell.text = fmt::format("{} of {}", compared, contrast.in_both);
-  }
-  return cell;
-}
-
 void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts,
               ReportTable& table) {
   std::vector<double> p;
@@ -126,7 +99,8 @@ void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts
     table.rows.push_back(
         {word(measure), word(one.first->block), word(one.second->block),
          difference_or_ratio(one.result.mean, one.result.interval, one.first->personal->is_ratio),
-         compared_people(one), probability(one.result.p), probability(adjusted[i])});
+         people_known(one.result.participants, one.in_both), probability(one.result.p),
+         probability(adjusted[i])});
   }
 }
 

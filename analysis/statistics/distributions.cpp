@@ -6,6 +6,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/gamma.hpp>
+#include <boost/math/distributions/non_central_t.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -59,6 +60,14 @@ double f_p(double f, double numerator_freedom, double denominator_freedom) {
   return f > 0.0 ? boost::math::cdf(boost::math::complement(distribution, f)) : 1.0;
 }
 
+double f_quantile(double probability, double numerator_freedom, double denominator_freedom) {
+  check_probability(probability);
+  check_degrees(numerator_freedom);
+  check_degrees(denominator_freedom);
+  return boost::math::quantile(boost::math::fisher_f{numerator_freedom, denominator_freedom},
+                               probability);
+}
+
 double gamma_quantile(double probability, double shape) {
   check_probability(probability);
   check_degrees(shape);
@@ -83,6 +92,13 @@ double t_quantile(double probability, double degrees_of_freedom) {
   check_probability(probability);
   check_degrees(degrees_of_freedom);
   return boost::math::quantile(boost::math::students_t{degrees_of_freedom}, probability);
+}
+
+double noncentral_t_quantile(double probability, double degrees_of_freedom, double noncentrality) {
+  check_probability(probability);
+  check_degrees(degrees_of_freedom);
+  return boost::math::quantile(boost::math::non_central_t{degrees_of_freedom, noncentrality},
+                               probability);
 }
 
 double normal_two_sided_p(double z) {

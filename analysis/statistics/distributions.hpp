@@ -11,12 +11,16 @@ double chi_squared_p(double x, double degrees_of_freedom);
 double chi_squared_quantile(double probability, double degrees_of_freedom);
 // P(F >= f) of Fisher's F
 double f_p(double f, double numerator_freedom, double denominator_freedom);
+// probability in (0, 1)
+double f_quantile(double probability, double numerator_freedom, double denominator_freedom);
 // Quantile of the gamma distribution with scale 1; probability in (0, 1), shape above 0
 double gamma_quantile(double probability, double shape);
 // probability in [0, 1], both shapes above 0
 double beta_quantile(double probability, double first_shape, double second_shape);
 // probability in (0, 1)
 double t_quantile(double probability, double degrees_of_freedom);
+// Of t whose numerator has this mean; probability in (0, 1)
+double noncentral_t_quantile(double probability, double degrees_of_freedom, double noncentrality);
 // The two-sided probability of a statistic at least as far from 0.
 double normal_two_sided_p(double z);
 }  // namespace tapstudy::analysis

@@ -23,12 +23,19 @@ inline constexpr std::array references{
     Reference{"Besag & Clifford 1989",
               "Besag, J. & Clifford, P. (1989). Generalized Monte Carlo significance tests. "
               "Biometrika 76, 633–642."},
+    Reference{"Bland & Altman 1986",
+              "Bland, J. M. & Altman, D. G. (1986). Statistical methods for assessing agreement "
+              "between two methods of clinical measurement. The Lancet 327, 307–310."},
     Reference{"Bowker 1948",
               "Bowker, A. H. (1948). A test for symmetry in contingency tables. Journal of the "
               "American Statistical Association 43, 572–574."},
     Reference{"Bradley & Terry 1952",
               "Bradley, R. A. & Terry, M. E. (1952). Rank analysis of incomplete block designs: I. "
               "The method of paired comparisons. Biometrika 39, 324–345."},
+    Reference{
+        "Carkeet 2015",
+        "Carkeet, A. (2015). Exact parametric confidence intervals for Bland-Altman limits of "
+        "agreement. Optometry and Vision Science 92, e71–e80."},
     Reference{"Clopper & Pearson 1934",
               "Clopper, C. J. & Pearson, E. S. (1934). The use of confidence or fiducial limits "
               "illustrated in the case of the binomial. Biometrika 26, 404–413."},
@@ -119,6 +126,9 @@ inline constexpr std::array references{
     Reference{"Maxwell 1970",
               "Maxwell, A. E. (1970). Comparing the classification of subjects by two independent "
               "judges. British Journal of Psychiatry 116, 651–655."},
+    Reference{"McGraw & Wong 1996",
+              "McGraw, K. O. & Wong, S. P. (1996). Forming inferences about some intraclass "
+              "correlation coefficients. Psychological Methods 1, 30–46."},
     Reference{"Miller 1955",
               "Miller, G. A. (1955). Note on the bias of information estimates. In H. Quastler "
               "(ed.), Information Theory in Psychology, 95–100."},

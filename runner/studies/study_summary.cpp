@@ -16,6 +16,7 @@
 #include "analysis/report/study/course.hpp"
 #include "analysis/report/study/groups.hpp"
 #include "analysis/report/study/rendered.hpp"
+#include "analysis/report/study/retest.hpp"
 #include "core/error.hpp"
 #include "core/model/fixation.hpp"
 #include "core/random/rng.hpp"
@@ -504,14 +505,59 @@ std::vector<analysis::ParticipantGroup> participant_groups(
   return groups;
 }
 
+// Blocks of the file that participants did in several sessions.
+std::vector<analysis::RepeatedBlock> repeated_blocks(const protocols::Protocol& protocol) {
+  std::vector<analysis::RepeatedBlock> repeated;
+  for (const protocols::Block& block : protocol.blocks) {
+    const auto known = std::ranges::find(repeated, block.measure, &analysis::RepeatedBlock::name);
+    if (block.session.empty() || block.is_practice) {
+      continue;
+    }
+    if (known == repeated.end()) {
+      repeated.push_back({block.measure, {block.name}});
+    } else {
+      known->blocks.push_back(block.name);
+    }
+  }
+  std::erase_if(repeated, [](const auto& block) { return block.blocks.size() < 2; });
+  return repeated;
+}
+
 // Hypotheses are adjusted for the number of all of them, so that theirs are always computed, and
-// contrasts and groups are of all blocks. A block without answers is one that the report tells of.
+// contrasts, groups and what is measured again are of all blocks. A block without answers is one
+// that the report tells of.
 void leave_out_unwanted(const Wanted& wanted, const std::vector<results::AnswerRow>& answers,
                         analysis::StudyDesign& design) {
+  namespace names = analysis::study_sections;
+  if (wanted.has(names::contrasts) || wanted.has(names::groups) || wanted.has(names::retest)) {
+    return;
+  }
   std::erase_if(design.blocks, [&](const analysis::BlockDesign& block) {
-    return !wanted.has(block.name) && !wanted.has(analysis::study_sections::contrasts) &&
-           !wanted.has(analysis::study_sections::groups) && block.hypotheses.empty() &&
+    return !wanted.has(block.name) && block.hypotheses.empty() &&
            std::ranges::find(answers, block.name, &results::AnswerRow::block) != answers.end();
+  });
+}
+// Before what else is of the whole study.
+void add_comparisons(const protocols::Protocol& protocol,
+                     const std::vector<results::SessionRow>& sessions, const Wanted& wanted,
+                     Summary& summary) {
+  namespace names = analysis::study_sections;
+  const auto add = [&](std::string_view name, const auto& compute) {
+    if (!wanted.has(name)) {
+      return;
+    }
+    if (std::optional<analysis::ReportSection> section = compute()) {
+      summary.sections.insert(summary.sections.begin(), std::move(*section));
+    }
+  };
+  add(names::retest,
+      [&] { return analysis::retest_section(summary.blocks, repeated_blocks(protocol)); });
+  add(names::contrasts, [&] {
+    return analysis::block_contrasts(summary.blocks,
+                                     protocol.block_order.order == protocols::Order::listed);
+  });
+  add(names::groups, [&] {
+    return analysis::groups_section(summary.blocks, participant_groups(protocol, sessions));
   });
 }
 }  // namespace
@@ -552,17 +598,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
   const DoneBlocks done = done_blocks(stores, mode);
   summary.sections = sections_of(protocol, stores, mode, done, wanted);
-  if (wanted.has(analysis::study_sections::contrasts)) {
-    const bool is_order_fixed = protocol.block_order.order == protocols::Order::listed;
-    if (auto contrasts = analysis::block_contrasts(summary.blocks, is_order_fixed)) {
-      summary.sections.insert(summary.sections.begin(), std::move(*contrasts));
-    }
-  }
-  if (wanted.has(analysis::study_sections::groups)) {
-    if (auto groups = groups_section(summary.blocks, participant_groups(protocol, all.sessions))) {
-      summary.sections.insert(summary.sections.begin(), std::move(*groups));
-    }
-  }
+  add_comparisons(protocol, all.sessions, wanted, summary);
   summary.provenance = provenance(study, protocol, all.sessions);
   summary.procedure = describe_procedure(protocol, all.sessions, summary.participant_ids, done);
   summary.unfinished = std::move(all.unfinished);

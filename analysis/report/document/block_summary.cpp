@@ -40,6 +40,23 @@ std::set<core::Source> BlockSummary::sources() const {
   return cited;
 }
 
+std::set<std::string> participants_of(const PersonalValues& values) {
+  std::set<std::string> all = values.participants;
+  for (const auto& [participant, value] : values.by_participant) {
+    all.insert(participant);
+  }
+  for (const auto& [participant, range] : values.beyond) {
+    all.insert(participant);
+  }
+  return all;
+}
+
+int number_in_both(const PersonalValues& first, const PersonalValues& second) {
+  const std::set<std::string> others = participants_of(second);
+  return static_cast<int>(std::ranges::count_if(
+      participants_of(first), [&](const std::string& one) { return others.contains(one); }));
+}
+
 std::vector<VisitOrder> orders_of(const std::vector<VisitOrder>& all,
                                   const std::vector<results::AnswerRow>& answers) {
   std::unordered_set<std::int64_t> trials;

@@ -24,6 +24,10 @@ struct PersonalValues {
   std::set<std::string> participants{};  // all who took part; those above where it is empty
 };
 
+std::set<std::string> participants_of(const PersonalValues& values);
+// How many took part in both.
+int number_in_both(const PersonalValues& first, const PersonalValues& second);
+
 // Of the people for whom value_of gives one.
 template <class People, class ValueOf>
 PersonalValues personal_values(std::string measure, bool is_ratio, const People& people,

@@ -78,6 +78,15 @@ Cell difference_or_ratio(double difference, const std::optional<Interval>& range
       range ? std::optional{Interval{std::exp(range->low), std::exp(range->high)}} : std::nullopt);
 }
 
+Cell people_known(std::int64_t known, std::int64_t took_part) {
+  Cell cell = count(known);
+  cell.values.emplace_back(took_part);
+  if (known < took_part) {
+    cell.text = fmt::format("{} of {}", known, took_part);
+  }
+  return cell;
+}
+
 Cell interval_above_zero(double value, const Interval& range) {
   return interval(value, range.high > 0.0 ? std::optional{range} : std::nullopt);
 }
@@ -118,6 +127,10 @@ Column interval_column(const CitingText& heading, const std::string& key) {
 
 Column counted_column(const CitingText& heading, const std::string& key) {
   return {heading, {key, key + "_of", key + "_share"}};
+}
+
+Column people_column(const CitingText& heading, const std::string& key) {
+  return {heading, {key, key + "_of"}};
 }
 
 Column proportion_column(const CitingText& heading, const std::string& key) {

@@ -84,6 +84,8 @@ Cell interval(double value, const Interval& interval);
 Cell interval(double value, const std::optional<Interval>& interval);
 // Of two values a difference or, by the logarithms' difference, their ratio.
 Cell difference_or_ratio(double difference, const std::optional<Interval>& interval, bool is_ratio);
+// "6 of 8" where nothing is known of some who took part, else "8". Values: both numbers.
+Cell people_known(std::int64_t known, std::int64_t took_part);
 // Of one that is cut off at 0: without its interval where nothing is left of it, which would look
 // like certainty.
 Cell interval_above_zero(double value, const Interval& interval);
@@ -98,5 +100,7 @@ Cell nothing(const Column& column, const std::string& text = "–");
 Column column(const CitingText& heading, const std::string& key);
 Column interval_column(const CitingText& heading, const std::string& key);
 Column counted_column(const CitingText& heading, const std::string& key);
+// Of people: KEY and KEY_of.
+Column people_column(const CitingText& heading, const std::string& key);
 Column proportion_column(const CitingText& heading, const std::string& key);
 }  // namespace tapstudy::analysis

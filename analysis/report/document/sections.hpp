@@ -28,13 +28,14 @@ struct ReportSection {
 namespace study_sections {
 inline constexpr std::string_view contrasts = "contrasts";
 inline constexpr std::string_view groups = "groups";
+inline constexpr std::string_view retest = "retest";
 inline constexpr std::string_view sessions = "sessions";
 inline constexpr std::string_view confidence = "confidence";
 inline constexpr std::string_view procedures = "procedures";
 inline constexpr std::string_view questionnaires = "questionnaires";
 inline constexpr std::string_view rendered = "rendered";
-inline constexpr std::array all{contrasts,  groups,         sessions, confidence,
-                                procedures, questionnaires, rendered};
+inline constexpr std::array all{contrasts,  groups,     retest,         sessions,
+                                confidence, procedures, questionnaires, rendered};
 }  // namespace study_sections
 
 // The same without its title.

@@ -76,17 +76,8 @@ Contrast contrast_of(const BlockSummary& block, const GroupValues& first,
   return contrast;
 }
 
-Cell people(const GroupValues& values) {
-  Cell cell = count(std::ssize(values.all));
-  cell.values.emplace_back(static_cast<std::int64_t>(values.took_part));
-  if (std::ssize(values.all) < values.took_part) {
-    cell.text = fmt::format("{} of {}", values.all.size(), values.took_part);
-  }
-  return cell;
-}
-
-Column people_column(const std::string& heading, const std::string& key) {
-  return {heading, {key, key + "_of"}};
+Cell people_in(const GroupValues& values) {
+  return people_known(std::ssize(values.all), values.took_part);
 }
 
 // The mean of those whose value is known, with the standard deviation; "–" where one is not.
@@ -113,7 +104,7 @@ void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts
                           word(one.second.group->label),
                           difference_or_ratio(one.result.difference, one.result.interval,
                                               one.block->personal->is_ratio),
-                          people(one.first), people(one.second), probability(p[i]),
+                          people_in(one.first), people_in(one.second), probability(p[i]),
                           probability(adjusted[i])});
   }
 }
@@ -159,7 +150,7 @@ void add_means(const BlockSummary& block, const std::vector<GroupValues>& values
   for (const GroupValues& group : values) {
     const std::vector<Cell> mean = mean_cells(group, block.personal->is_ratio);
     means.rows.push_back({word(block.block), word(block.personal->measure),
-                          word(group.group->label), people(group), mean[0], mean[1]});
+                          word(group.group->label), people_in(group), mean[0], mean[1]});
   }
 }
 }  // namespace

@@ -21,15 +21,15 @@ function(unite_by_folder)
   endforeach()
 endfunction()
 
-# CGAL is a quarter of the build, and what uses it runs once for a surface: lightly optimised, so
-# without the precompiled header, which fits only sources that are optimised as it was. GCC takes an
-# empty boost::optional of CGAL's for one that is read.
+# CGAL is a quarter of the build, and what uses it runs once for a surface, in one thread: lightly
+# optimised, so without the precompiled header, which fits only sources that are optimised as it was,
+# and not watched for races. GCC takes an empty boost::optional of CGAL's for one that is read.
 function(optimise_cgal_lightly)
   foreach(source IN LISTS ARGN)
     file(STRINGS ${source} uses_cgal REGEX "#include <CGAL/" LIMIT_COUNT 1)
     if(uses_cgal)
       set_source_files_properties(${source} PROPERTIES
-        COMPILE_OPTIONS "-O1;$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>" SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+        COMPILE_OPTIONS "-O1;$<IF:$<CXX_COMPILER_ID:GNU>,-Wno-maybe-uninitialized,-fno-sanitize=thread>" SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
   endforeach()
 endfunction()

@@ -10,13 +10,13 @@ namespace tapstudy::runner {
 enum class Listing { modes, all };
 void print(const TapIdentification& found, Listing listing);
 
-// The results as keys of a protocol, with intervals as comments: the whole material under
-// `materials` if a stimulus was named, else `damping` alone; under `rendering` the sinusoid where
-// its force is known. Damping is Rayleigh's where it fits. Ratios stand beside the frequencies at
-// which they were found; as `modal_ratios`, which go to the model's modes in order, they are
-// offered where a model says which mode is which: up to the last mode that was measured, those
-// between by linear interpolation over frequency, which a comment says. Where springs were found,
-// the plate's `fixations`, whole, under `plates`.
+// The results as keys of a protocol, with intervals and remarks as comments: the whole material
+// under `materials` if a stimulus was named, else `damping` alone; under `rendering` the sinusoid
+// where its force is known. Damping is Rayleigh's where it fits. Ratios stand beside the
+// frequencies at which they were found; as `modal_ratios`, which go to the model's modes in order,
+// they are offered where a model says which mode is which: up to the last mode that was measured,
+// those between by linear interpolation over frequency, which a comment says. Where springs were
+// found, the plate's `fixations`, whole, under `plates`.
 std::string yaml_of(const TapIdentification& found);
 
 // One of a protocol's fixations, as it is read: {region: ...}. is_of_box: of a plate, not a

@@ -269,6 +269,10 @@ std::string yaml_of(const TapIdentification& found) {
   for (const std::string& other : found.others) {
     text += fmt::format("# not listed: {}\n", other);
   }
+  for (std::string remark : found.remarks) {
+    std::ranges::replace(remark, '\n', ' ');  // of a file's name
+    text += fmt::format("# {}\n", remark);
+  }
   if (found.sinusoid) {
     text += sinusoid_of(*found.sinusoid, found.loop_rate_hz);
   }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "core/error.hpp"
 #include "runner/laboratory/identify/fits_over_taps.hpp"
@@ -200,4 +201,18 @@ TEST_CASE("what was found of an orthotropic material is pasted as one, all modul
                        Contains("poissons_ratios: [0.37, 0.42, 0.47]") &&
                        Contains("axes_rotation_rad: [0, 0, 0.5]") &&
                        !Contains("youngs_modulus_pa"));
+}
+
+TEST_CASE("what was noticed about the taps stands in what is pasted, as comments",
+          "[runner][identify]") {
+  runner::TapIdentification found;
+  found.others = {"11 components below 40 Hz: hum or handling"};
+  found.remarks = {"9 of 23 taps: cut at the next one (taps\nof oak.wav)", "modes at 50 Hz: hum?"};
+  const std::string yaml = runner::yaml_of(found);
+  CHECK_THAT(yaml, Contains("# not listed: 11 components") && Contains("# 9 of 23 taps: cut") &&
+                       Contains("# modes at 50 Hz"));
+  std::istringstream lines{yaml};
+  for (std::string line; std::getline(lines, line);) {
+    CHECK(line.starts_with('#'));
+  }
 }

@@ -207,12 +207,25 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
                         "port: 50607, max_reply_s: 0.003",
                         fmt::format("port: {}, max_reply_s: 0.05", port)) +
           "loop: {max_late_ticks_in_a_row: 1000000, max_stall_s: 0.1, max_missed_share: 1}\n");
-  const auto live = testing::run_program(
-      {"/usr/bin/python3", testing::source("tests/support/with_logind.py"), "/bin/bash", "-c",
-       "for i in 1 2 3 4 1 2 3 4; do sleep 0.9; echo $i; done | \"$0\" run \"$1\" --rig \"$2\" "
-       "--participant P01 --seed 5 --out \"$3\"",
-       testing::tapstudy_program(), paper("discrimination.yaml"), directory / "rig.yaml",
-       directory / "the_study"});
+  // The bridge lets go where the machine keeps the session from it for 20 ms, which ends this one:
+  // it is gone on with, as people would.
+  std::vector<std::string> command{
+      "/usr/bin/python3",
+      testing::source("tests/support/with_logind.py"),
+      "/bin/bash",
+      "-c",
+      "for i in 1 2 3 4 1 2 3 4; do sleep 0.9; echo $i; done | \"$0\" run \"$1\" --rig \"$2\" "
+      "--participant P01 --seed 5 --out \"$3\" $4",
+      testing::tapstudy_program(),
+      paper("discrimination.yaml"),
+      directory / "rig.yaml",
+      directory / "the_study"};
+  auto live = testing::run_program(command);
+  command.emplace_back("--resume");
+  constexpr int interrupted = 3;
+  for (int times = 0; live.exit_code == interrupted && times < 5; ++times) {
+    live = testing::run_program(command);
+  }
   INFO(live.standard_error);
   REQUIRE(live.exit_code == 0);
   CHECK_THAT(live.standard_output,
@@ -220,14 +233,17 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
                       "block\nstill inhibited: 0"));
   CHECK_THAT(sql(directory, "SELECT doctor FROM session"),
              Contains(R"("sleep":"sleep inhibited")"));
-  CHECK(sql(directory, "SELECT device FROM session") ==
+  CHECK(sql(directory, "SELECT DISTINCT device FROM session") ==
         fmt::format("example finger, serial number 1, remote/3 at UDP port {}\n", port));
   CHECK(sql(directory, "SELECT count(*) FROM response") == "8\n");
   CHECK(sql(directory, "SELECT count(*) > 4 FROM event WHERE kind = 'impact'") == "1\n");
 
+  std::string trial = sql(directory, "SELECT max(trial_id) FROM trial WHERE status = 'answered'");
+  trial.pop_back();  // the end of the line
   testing::write(directory / "replay.yaml",
                  "format: tapstudy-rig/1\ndevice: replay\nmax_force_n: 5\n"
-                 "max_force_rate_n_per_s: 5000\nreplay: {directory: the_study, trial_id: 3}\n");
+                 "max_force_rate_n_per_s: 5000\nreplay: {directory: the_study, trial_id: " +
+                     trial + "}\n");
   const std::vector<std::string> replay{"run",           paper("discrimination.yaml"),
                                         "--rig",         directory / "replay.yaml",
                                         "--participant", "P02",
@@ -238,7 +254,8 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
   CHECK(testing::run_program({"/usr/bin/sqlite3", directory / "replayed/study.db",
                               "SELECT device, mode FROM session JOIN participant "
                               "USING (participant_id)"})
-            .standard_output == "replay of trial 3 of " + (directory / "the_study") + "|pilot\n");
+            .standard_output ==
+        "replay of trial " + trial + " of " + (directory / "the_study") + "|pilot\n");
 }
 
 TEST_CASE("report --mode takes the sessions that it names, and no others",

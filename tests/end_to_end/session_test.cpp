@@ -161,7 +161,7 @@ TEST_CASE("Ctrl-C in a session keeps what was answered and says how to go on",
   const TempDirectory directory;
   // in the foreground: else the whole process group is told too, and a second signal ends at once
   const std::string script =
-      "(echo 1; sleep 7) | /usr/bin/timeout --foreground --preserve-status -s INT 5 \"$0\" run "
+      "(echo 1; sleep 15) | /usr/bin/timeout --foreground --preserve-status -s INT 12 \"$0\" run "
       "\"$1\" --participant P01 --seed 5 --out \"$2\" 2>\"$3\"; echo $?; kill $(jobs -p) "
       "2>/dev/null";
   const auto result = testing::run_program(

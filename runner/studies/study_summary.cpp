@@ -509,10 +509,10 @@ std::vector<analysis::ParticipantGroup> participant_groups(
 std::vector<analysis::RepeatedBlock> repeated_blocks(const protocols::Protocol& protocol) {
   std::vector<analysis::RepeatedBlock> repeated;
   for (const protocols::Block& block : protocol.blocks) {
-    const auto known = std::ranges::find(repeated, block.measure, &analysis::RepeatedBlock::name);
     if (block.session.empty() || block.is_practice) {
       continue;
     }
+    const auto known = std::ranges::find(repeated, block.measure, &analysis::RepeatedBlock::name);
     if (known == repeated.end()) {
       repeated.push_back({block.measure, {block.name}});
     } else {
@@ -537,7 +537,8 @@ void leave_out_unwanted(const Wanted& wanted, const std::vector<results::AnswerR
            std::ranges::find(answers, block.name, &results::AnswerRow::block) != answers.end();
   });
 }
-// Before what else is of the whole study.
+
+// They stand before the other sections: groups first, then blocks, then test and retest.
 void add_comparisons(const protocols::Protocol& protocol,
                      const std::vector<results::SessionRow>& sessions, const Wanted& wanted,
                      Summary& summary) {

@@ -207,8 +207,8 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
                         "port: 50607, max_reply_s: 0.003",
                         fmt::format("port: {}, max_reply_s: 0.05", port)) +
           "loop: {max_late_ticks_in_a_row: 1000000, max_stall_s: 0.1, max_missed_share: 1}\n");
-  // The bridge lets go where the machine keeps the session from it for 20 ms, which ends this one:
-  // it is gone on with, as people would.
+  // The bridge releases the force after 20 ms without a request, as on a busy machine: the session
+  // is then interrupted, and resumed as people would.
   std::vector<std::string> command{
       "/usr/bin/python3",
       testing::source("tests/support/with_logind.py"),

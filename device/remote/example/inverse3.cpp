@@ -78,9 +78,9 @@ class Inverse3 final : public bridge::Device {
   }
   void exert(const bridge::wire::Vector& force_n) override {
     force_n_ = force_n;
-    // Letting go does not wait for the service's next state. Once: were each zero force sent,
-    // states would queue at a service that sends the next one when the last is acknowledged, and
-    // never be young again.
+    // Letting go does not wait for the service's next state. It is sent once: if each zero force
+    // were, states would queue at a service that sends the next one when the last is acknowledged,
+    // and all further ones would arrive late.
     const bridge::wire::Vector zero{};
     if (states_awaited_ == 0 || (force_n == zero && force_sent_n_ != zero)) {
       send_force();

@@ -72,6 +72,8 @@ class RemoteHand final : public Device {
   core::TickFault fault_of_status(std::uint32_t status) noexcept;
   core::TickFault fault_of_motion(double elapsed_s) noexcept;
   void estimate_velocity(double elapsed_s) noexcept;
+  int max_requests_of_a_stop() const noexcept;
+  bool shows_no_force(SamplesSince& samples, Nanoseconds since) noexcept;
   void sleep_for(std::chrono::nanoseconds duration) noexcept;
 
   std::uint16_t port_;

@@ -96,4 +96,12 @@ TickFault SampleCheck::judge(const RemoteSample& sample, double elapsed_s) noexc
   return sample.age_s > max_age_s_ || still_s_ > max_age_s_ ? TickFault::position_frozen
                                                             : TickFault::none;
 }
+
+int SamplesSince::counted(const RemoteSample& sample, bool is_force_exerted,
+                          double since_s) noexcept {
+  const bool is_new = number_ && sample.number > *number_ && sample.age_s < since_s;
+  number_ = number_ ? std::max(*number_, sample.number) : sample.number;
+  count_ = is_force_exerted ? 0 : count_ + (is_new ? 1 : 0);
+  return count_;
+}
 }  // namespace tapstudy::device

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "core/haptics/haptic_state.hpp"
 #include "device/remote/packets.hpp"
@@ -76,5 +77,19 @@ class SampleCheck {
   bool is_known_{false};
   std::uint64_t number_{0};
   double still_s_{0.0};
+};
+
+// Counts the samples that a device took after it was sent zero force. One whose number is not above
+// that in the first reply to it, or that is older than the request, is from before: a device whose
+// samples are repeated, or come out of a queue, has none.
+class SamplesSince {
+ public:
+  // Once a reply, with the time since zero force was first sent. Those before a force are
+  // forgotten.
+  int counted(const RemoteSample& sample, bool is_force_exerted, double since_s) noexcept;
+
+ private:
+  std::optional<std::uint64_t> number_;
+  int count_{0};
 };
 }  // namespace tapstudy::device

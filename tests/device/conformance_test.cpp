@@ -252,7 +252,7 @@ class RemoteRow final : public BackEnd {
         return meet(deaf, no_reply, false);
       case Trouble::frozen:
         program_.tremor_m = 0.0;
-        return program_.version == 3 ? meet(dead_thread, {TickFault::position_frozen})
+        return program_.version == 3 ? meet(dead_thread, {TickFault::position_frozen}, false)
                                      : Expected{{TickFault::position_frozen}};
       case Trouble::slow_reply:
         program_.reply_delay = std::llround(1e6 * cell.amount);

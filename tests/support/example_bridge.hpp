@@ -46,6 +46,14 @@ class ExampleBridge {
       child_ = -1;
     }
   }
+  // Until it is told to go on.
+  void stop() {
+    kill(child_, SIGSTOP);
+    int status = 0;
+    while (waitpid(child_, &status, WUNTRACED) == child_ && !WIFSTOPPED(status)) {
+    }
+  }
+  void go_on() { kill(child_, SIGCONT); }
   // Of one that ends by itself.
   int exit_code() {
     int status = 0;

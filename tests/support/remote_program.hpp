@@ -64,6 +64,8 @@ class RemoteProgram final : public device::DatagramPipe {
   double exerted_n{0.0};
   int forces_since_trouble{0};
   int answered{0};
+  int samples_left{std::numeric_limits<int>::max()};  // then the newest stays the newest
+  double age_s{1e-4};                                 // of a sample
   device::wire::Introduction introduction{.workspace_radius_m = 0.1,
                                           .max_force_n = 5.0,
                                           .max_stiffness_n_per_m = 5000.0,
@@ -228,10 +230,10 @@ class RemoteProgram final : public device::DatagramPipe {
   Bytes reply_of_3(std::uint32_t number) {
     device::wire::Reply reply;
     reply.request = number;
-    sample_ += trouble == RemoteTrouble::dead_thread ? 0 : 1;
+    take_sample();
     reply.sample = sample_ + (trouble == RemoteTrouble::samples_jump ? 1'000'000 : 0) -
                    (trouble == RemoteTrouble::samples_fall ? 500 : 0);
-    reply.age_s = trouble == RemoteTrouble::too_old ? 0.006 : 1e-4;
+    reply.age_s = trouble == RemoteTrouble::too_old ? 0.006 : age_s;
     reply.position_m = {0.0, told_height_m(), 0.0};
     reply.velocity_m_s = {0.0, told_velocity_m_s(), 0.0};
     reply.orientation[0] = trouble == RemoteTrouble::no_unit ? 1.01 : 1.0;
@@ -239,6 +241,14 @@ class RemoteProgram final : public device::DatagramPipe {
     reply.status = status();
     reply.text[0] = trouble == RemoteTrouble::rude_text ? '\x1b' : '\0';
     return bytes_of(reply);
+  }
+  // At its rate, and when it is asked.
+  void take_sample() {
+    if (trouble != RemoteTrouble::dead_thread && samples_left > 0 && now_ >= next_sample_at_) {
+      ++sample_;
+      --samples_left;
+      next_sample_at_ = now_ + std::llround(1e9 / introduction.rate_hz);
+    }
   }
   double measured_n() {
     gauge_.push_back({now_, exerted_n});
@@ -264,6 +274,7 @@ class RemoteProgram final : public device::DatagramPipe {
   core::Rng rng_{1};
   std::deque<std::pair<Nanoseconds, double>> gauge_;
   std::uint64_t sample_{1000};
+  Nanoseconds next_sample_at_{0};
   double tap_m_{0.0};
   Nanoseconds tapping_since_{0};
   int asked_{0};

@@ -1,7 +1,8 @@
 #pragma once
 // What a bridge between tapstudy and a device does, whatever the device (remote/3, ../wire.hpp): it
 // obeys one sender at a time, and only numbers that rise; limits every force; and exerts none after
-// a silence, while the device gives no samples, and when it is told to end.
+// a silence, while the device gives no samples, after it was stopped or hung itself, and when it is
+// told to end.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -17,6 +19,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 #include "../wire.hpp"
@@ -92,18 +95,39 @@ class Server {
     while (is_told_to_end == 0) {
       std::array<pollfd, 2> waiting{{{socket_, POLLIN, 0}, {device_.descriptor(), POLLIN, 0}}};
       poll(waiting.data(), waiting.size(), static_cast<int>(max_silence.count() / 4));
+      note_silence();  // before anything else: this program may have been stopped
       if (waiting[1].revents != 0) {
         device_.take_input();
       }
-      if (waiting[0].revents != 0) {
-        take_datagram();
-      }
-      note_silence();
+      take_datagrams();
     }
   }
 
  private:
-  void take_datagram() {
+  // Only the newest of the requests that wait is obeyed. They arrived since the queue was empty:
+  // was that longer ago than force outlasts a request, because this program was stopped or hung,
+  // they exert nothing.
+  void take_datagrams() {
+    constexpr int at_most = 1000;
+    const Clock::time_point empty_before = empty_at_;
+    std::optional<wire::Request> newest;
+    for (int i = 0; i < at_most; ++i) {
+      const Clock::time_point now = Clock::now();
+      if (!take_datagram(newest)) {
+        empty_at_ = now;
+        break;
+      }
+    }
+    if (newest && Clock::now() - empty_before > max_silence) {
+      newest->force_n = {};
+      has_released_ = true;
+    }
+    if (newest) {
+      obey(*newest);
+    }
+  }
+  // False if none waits.
+  bool take_datagram(std::optional<wire::Request>& newest) {
     wire::Request request;
     sockaddr_in from{};
     socklen_t size = sizeof from;
@@ -111,7 +135,7 @@ class Server {
     const ssize_t count = recvfrom(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT,
                                    reinterpret_cast<sockaddr*>(&from), &size);
     if (count != sizeof request) {
-      return;
+      return count >= 0 || errno != EAGAIN;
     }
     std::memcpy(&request, bytes.data(), sizeof request);
     const bool is_finite =
@@ -119,8 +143,10 @@ class Server {
     if (request.mark == wire::Request::expected_mark && is_finite &&
         is_next(from, request.number)) {
       listen_to(from);
-      obey(request);
+      number_ = request.number;
+      newest = request;
     }
+    return true;
   }
   // Datagrams that arrived before the socket was connected may be of anybody.
   bool is_next(const sockaddr_in& from, std::uint32_t number) const {
@@ -158,7 +184,6 @@ class Server {
     device_.exert(force_n);
   }
   void obey(const wire::Request& request) {
-    number_ = request.number;
     if (request.asked == wire::Asked::introduction) {
       wire::Introduction introduction = device_.introduction();
       introduction.request = number_;
@@ -193,6 +218,7 @@ class Server {
   bool has_sender_ = false;
   bool has_released_ = true;
   Clock::time_point heard_at_ = Clock::now();
+  Clock::time_point empty_at_ = Clock::now();  // the socket's queue, the last time
   std::uint32_t number_ = 0;
 };
 }  // namespace bridge

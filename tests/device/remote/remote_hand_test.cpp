@@ -15,6 +15,7 @@
 #include <deque>
 #include <limits>
 #include <numbers>
+#include <thread>
 #include <vector>
 
 #include "core/random/rng.hpp"
@@ -211,12 +212,40 @@ TEST_CASE("the example bridge obeys no request that is older than the last one",
   sender.ask(last + 1, {3.0, 0.0, 0.0});
   sender.ask(last + 2, {3.0, 0.0, 0.0});
   sender.ask(last + 3, {2.0, 0.0, 0.0});
-  const auto first = sender.next_reply();  // replies come in the order of the requests
-  const auto second = sender.next_reply();
-  REQUIRE((first && second));
-  CHECK(first->exerted_n == Vec3{1.0, 0.0, 0.0});
-  CHECK(second->number == last + 3);
-  CHECK(second->exerted_n == Vec3{2.0, 0.0, 0.0});
+  for (std::uint32_t number = last; number != last + 3;) {  // those that wait are one: the newest
+    const auto reply = sender.next_reply();
+    REQUIRE(reply);
+    REQUIRE(reply->number > number);
+    number = reply->number;
+    CHECK(reply->exerted_n.x() <= (number == last + 3 ? 2.0 : 1.0));
+  }
+}
+
+TEST_CASE(
+    "a bridge that was stopped exerts none of the requests that waited, and answers the newest",
+    "[device][remote][safety]") {
+  const std::uint16_t port = free_port();
+  ExampleBridge bridge{port};
+  RogueSender sender{port};
+  std::uint32_t last = 0;
+  const auto is_exerted = [&] {
+    sender.ask(++last, {1.0, 0.0, 0.0});
+    const auto reply = sender.next_reply(std::chrono::milliseconds{50});
+    return reply && reply->number == last && reply->exerted_n == Vec3{1.0, 0.0, 0.0};
+  };
+  while (!is_exerted()) {
+  }
+  bridge.stop();
+  for (int i = 0; i < 5; ++i) {
+    sender.ask(++last, {1.0, 0.0, 0.0});
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds{25});  // longer than force may outlast one
+  bridge.go_on();
+  const auto reply = sender.next_reply();
+  REQUIRE(reply);
+  CHECK(reply->number == last);
+  CHECK(reply->exerted_n == Vec3::Zero());
+  CHECK((*reply->status & device::wire::force_was_released) != 0);
 }
 
 TEST_CASE("the example bridge lets go of the force when nobody asks", "[device][remote][safety]") {
@@ -248,7 +277,10 @@ namespace {
 constexpr auto max_reply = 5ms;
 
 struct Stage {
-  explicit Stage(int version = 2) : owned{std::make_unique<RemoteProgram>(version)} {}
+  explicit Stage(int version = 2, double rate_hz = 1000.0)
+      : owned{std::make_unique<RemoteProgram>(version)} {
+    program.introduction.rate_hz = rate_hz;
+  }
   std::unique_ptr<RemoteProgram> owned;
   RemoteProgram& program{*owned};
   device::RemoteHand hand{40'000, {max_reply}, std::move(owned)};
@@ -463,6 +495,24 @@ TEST_CASE("a stop that a later reply contradicts is not confirmed", "[device][sa
   CHECK(stage.hand.zero_force() == device::StopOutcome::confirmed);
   stage.program.trouble = RemoteTrouble::overload;
   CHECK(stage.hand.zero_force() == device::StopOutcome::unconfirmed);
+}
+
+TEST_CASE(
+    "a stop is confirmed by two samples that the device took after it was sent zero force, not by "
+    "replies that repeat a sample or come out of a queue",
+    "[device][safety][remote]") {
+  const auto [samples_left, age_s, outcome] = GENERATE(
+      table<int, double, device::StopOutcome>({{0, 1e-4, device::StopOutcome::unconfirmed},
+                                               {2, 1e-4, device::StopOutcome::unconfirmed},
+                                               {3, 1e-4, device::StopOutcome::confirmed},
+                                               {1000, 1e-4, device::StopOutcome::confirmed},
+                                               {1000, 0.2, device::StopOutcome::unconfirmed}}));
+  CAPTURE(samples_left, age_s);
+  const double rate_hz = GENERATE(20.0, 1000.0);
+  Stage stage{3, rate_hz};
+  stage.program.samples_left = samples_left;
+  stage.program.age_s = age_s;
+  CHECK(stage.hand.zero_force() == outcome);
 }
 
 TEST_CASE("a stop is confirmed though the device measures its force coarsely or late",

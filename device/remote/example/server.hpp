@@ -2,7 +2,7 @@
 // What a bridge between tapstudy and a device does, whatever the device (remote/3, ../wire.hpp): it
 // obeys one sender at a time, and only numbers that rise; limits every force; and exerts none after
 // a silence, while the device gives no samples, after it was stopped or hung itself, and when it is
-// told to end.
+// told to end. A request for an introduction, and what it does not understand, end a force, too.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -128,25 +128,44 @@ class Server {
   }
   // False if none waits.
   bool take_datagram(std::optional<wire::Request>& newest) {
-    wire::Request request;
     sockaddr_in from{};
     socklen_t size = sizeof from;
-    std::array<char, sizeof request + 1> bytes{};
+    std::array<char, sizeof(wire::Request) + 1> bytes{};
     const ssize_t count = recvfrom(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT,
                                    reinterpret_cast<sockaddr*>(&from), &size);
-    if (count != sizeof request) {
-      return count >= 0 || errno != EAGAIN;
+    if (count < 0) {
+      return errno != EAGAIN;
     }
-    std::memcpy(&request, bytes.data(), sizeof request);
-    const bool is_finite =
-        std::ranges::all_of(request.force_n, [](double n) { return std::isfinite(n); });
-    if (request.mark == wire::Request::expected_mark && is_finite &&
-        is_next(from, request.number)) {
+    const auto request = request_in({bytes.data(), static_cast<std::size_t>(count)});
+    if (request && is_next(from, request->number)) {
       listen_to(from);
-      number_ = request.number;
+      number_ = request->number;
       newest = request;
+    } else if (!request && has_sender_ && from.sin_port == sender_.sin_port) {
+      let_go(newest);
     }
     return true;
+  }
+  // What is not understood is no reason to go on with the force before it.
+  void let_go(std::optional<wire::Request>& newest) {
+    exert({});
+    if (newest) {
+      newest->force_n = {};
+    }
+  }
+  static std::optional<wire::Request> request_in(std::string_view bytes) {
+    wire::Request request;
+    if (bytes.size() != sizeof request) {
+      return std::nullopt;
+    }
+    std::memcpy(&request, bytes.data(), sizeof request);
+    const bool is_known =
+        request.asked == wire::Asked::exchange || request.asked == wire::Asked::introduction;
+    const bool is_finite =
+        std::ranges::all_of(request.force_n, [](double n) { return std::isfinite(n); });
+    return request.mark == wire::Request::expected_mark && is_known && is_finite
+               ? std::optional{request}
+               : std::nullopt;
   }
   // Datagrams that arrived before the socket was connected may be of anybody.
   bool is_next(const sockaddr_in& from, std::uint32_t number) const {
@@ -185,11 +204,12 @@ class Server {
   }
   void obey(const wire::Request& request) {
     if (request.asked == wire::Asked::introduction) {
+      exert({});
       wire::Introduction introduction = device_.introduction();
       introduction.request = number_;
       introduction.release_s = std::chrono::duration<double>(max_silence).count();
       send(socket_, &introduction, sizeof introduction, 0);
-    } else if (request.asked == wire::Asked::exchange) {
+    } else {
       exert(request.force_n);
       reply();
     }

@@ -3,6 +3,7 @@
 #include "support/dhd/stand_in.hpp"
 #include "support/example_bridge.hpp"
 #include "support/mapped_stand_in.hpp"
+#include "support/rogue_sender.hpp"
 using namespace tapstudy;
 using core::TickFault;
 using core::Vec3;
@@ -80,4 +81,28 @@ TEST_CASE("a device of the DHD interface without a watchdog gets no force",
   testing::ExampleBridge bridge{port, {testing::dhd_program(), "4.0", "3000", "0.05"}};
   CHECK(bridge.exit_code() == 1);
   CHECK_FALSE(bench.device().is_force_enabled);
+}
+
+TEST_CASE("an introduction or an unknown request in mid-session leaves the device without force",
+          "[device][remote][safety]") {
+  DhdBench bench;
+  const std::uint16_t port = testing::free_port();
+  const testing::ExampleBridge bridge{port, {testing::dhd_program(), "4.0", "3000", "0.05"}};
+  testing::RogueSender sender{port};
+  std::uint32_t number = 0;
+  while (bench.force_n().z() != 2.0) {
+    sender.ask(++number, {0.0, 2.0, 0.0});
+    static_cast<void>(sender.next_reply(std::chrono::milliseconds{5}));
+  }
+  // each says as an exchange would that the sender is alive, so that no silence ends the force
+  const auto asked = GENERATE(device::wire::Asked::introduction, device::wire::Asked{7});
+  for (int i = 0; i < 100 && bench.force_n() != Vec3::Zero(); ++i) {
+    sender.ask(++number, {0.0, 2.0, 0.0}, asked);
+    static_cast<void>(sender.next_reply(std::chrono::milliseconds{1}));
+  }
+  CHECK(bench.force_n() == Vec3::Zero());
+  while (bench.force_n().z() != 2.0) {  // until the next exchange
+    sender.ask(++number, {0.0, 2.0, 0.0});
+    static_cast<void>(sender.next_reply(std::chrono::milliseconds{5}));
+  }
 }

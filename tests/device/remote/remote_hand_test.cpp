@@ -24,6 +24,7 @@
 #include "support/catch.hpp"
 #include "support/example_bridge.hpp"
 #include "support/remote_program.hpp"
+#include "support/rogue_sender.hpp"
 #include "support/staged_loop.hpp"
 using namespace tapstudy;
 using core::TickFault;
@@ -31,6 +32,7 @@ using core::Vec3;
 
 using testing::ExampleBridge;
 using testing::free_port;
+using testing::RogueSender;
 using testing::unhurried;
 
 namespace {
@@ -133,47 +135,6 @@ TEST_CASE("a replayed hand goes where the recorded one went, and stays there", "
     hand.rewind();
   }
 }
-
-namespace {
-// Another program on this machine that would like to move the device.
-class RogueSender {
- public:
-  explicit RogueSender(std::uint16_t port) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const auto generic = std::bit_cast<sockaddr>(address);
-    REQUIRE(connect(socket_, &generic, sizeof generic) == 0);
-  }
-  ~RogueSender() { close(socket_); }
-  RogueSender(const RogueSender&) = delete;
-  RogueSender& operator=(const RogueSender&) = delete;
-  RogueSender(RogueSender&&) = delete;
-  RogueSender& operator=(RogueSender&&) = delete;
-  void send(const Vec3& force_n) {
-    ask(4'000'000'000U, force_n);
-    static_cast<void>(::send(socket_, "nonsense", 8, 0));
-  }
-  void ask(std::uint32_t number, const Vec3& force_n) {
-    const auto bytes = device::encoded(device::wire::Request{
-        .number = number, .force_n = {force_n.x(), force_n.y(), force_n.z()}});
-    static_cast<void>(::send(socket_, bytes.data(), bytes.size(), 0));
-  }
-  std::optional<device::RemoteReply> next_reply(std::chrono::milliseconds patience = unhurried) {
-    pollfd waiting{socket_, POLLIN, 0};
-    std::array<std::uint8_t, 300> reply{};
-    poll(&waiting, 1, static_cast<int>(patience.count()));
-    const ssize_t count = recv(socket_, reply.data(), reply.size(), MSG_DONTWAIT);
-    return count < 0
-               ? std::nullopt
-               : device::decoded_reply(std::span{reply}.first(static_cast<std::size_t>(count)));
-  }
-
- private:
-  int socket_{socket(AF_INET, SOCK_DGRAM, 0)};
-};
-}  // namespace
 
 TEST_CASE("the example bridge obeys one sender, and never more force than the device may exert",
           "[device][remote][safety]") {

@@ -1,8 +1,12 @@
 #include "device/remote/packets.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+
+#include "device/device.hpp"
 namespace tapstudy::device {
 namespace {
 constexpr wire::Mark request_mark{'T', 'A', 'P', 'S'};
@@ -43,10 +47,6 @@ bool is_text(const std::array<char, Size>& text) noexcept {
   return end != text.end() &&
          std::all_of(text.begin(), end, [](char c) { return c >= ' ' && c <= '~'; }) &&
          std::all_of(end, text.end(), [](char c) { return c == '\0'; });
-}
-
-bool is_positive(double value) noexcept {
-  return std::isfinite(value) && value > 0.0;
 }
 
 template <class Datagram>
@@ -118,26 +118,33 @@ std::optional<RemoteReply> decoded_reply(std::span<const std::uint8_t> bytes) no
   return is_known_or_unknown(exerted_n) ? std::optional{reply} : std::nullopt;
 }
 
-std::optional<RemoteDescription> decoded_introduction(std::span<const std::uint8_t> bytes,
-                                                      std::uint32_t number) {
+std::optional<wire::Introduction> decoded_introduction(std::span<const std::uint8_t> bytes,
+                                                       std::uint32_t number) noexcept {
   const auto told = datagram_in<wire::Introduction>(bytes);
   constexpr std::uint32_t all_axes = 6;
   const bool is_valid =
       told && told->request == number && (told->measured_axes == 3 || told->measured_axes == 6) &&
-      told->driven_axes <= all_axes && is_positive(told->workspace_radius_m) &&
-      is_positive(told->max_force_n) && is_positive(told->max_stiffness_n_per_m) &&
-      is_positive(told->rate_hz) && is_positive(told->release_s) && is_text(told->name) &&
-      is_text(told->serial_number);
-  if (!is_valid) {
-    return std::nullopt;
+      told->driven_axes <= all_axes && is_text(told->name) && is_text(told->serial_number);
+  return is_valid ? told : std::nullopt;
+}
+
+RemoteDescription description_in(const wire::Introduction& told) {
+  for (const wire::Limit& limit : wire::limits) {
+    if (!limit.allows(told)) {
+      throw DeviceError{fmt::format(
+          "remote: '{}' introduces itself with a {} of {:.6g} {}: only {:.6g} to {:.6g} {} are "
+          "believed",
+          told.name.data(), limit.name, told.*limit.value, limit.unit, limit.least, limit.greatest,
+          limit.unit)};
+    }
   }
-  return RemoteDescription{told->name.data(),
-                           told->serial_number.data(),
-                           static_cast<int>(told->driven_axes),
-                           told->workspace_radius_m,
-                           told->max_force_n,
-                           told->max_stiffness_n_per_m,
-                           told->rate_hz,
-                           told->release_s};
+  return {told.name.data(),
+          told.serial_number.data(),
+          static_cast<int>(told.driven_axes),
+          told.workspace_radius_m,
+          told.max_force_n,
+          told.max_stiffness_n_per_m,
+          told.rate_hz,
+          told.release_s};
 }
 }  // namespace tapstudy::device

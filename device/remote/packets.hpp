@@ -63,7 +63,10 @@ std::array<std::uint8_t, sizeof(wire::Request)> encoded(const wire::Request& req
 // nullopt if the bytes are not a valid reply of one of the versions. Anything may be in the
 // position: what is not finite there is a fault of its own in the loop.
 std::optional<RemoteReply> decoded_reply(std::span<const std::uint8_t> bytes) noexcept;
-// nullopt if the bytes are not a valid introduction to the request of this number.
-std::optional<RemoteDescription> decoded_introduction(std::span<const std::uint8_t> bytes,
-                                                      std::uint32_t number);
+// nullopt if the bytes are not an introduction to the request of this number. Its limits are as
+// they came.
+std::optional<wire::Introduction> decoded_introduction(std::span<const std::uint8_t> bytes,
+                                                       std::uint32_t number) noexcept;
+// Throws DeviceError if it says of the device what no device is (wire::limits).
+RemoteDescription description_in(const wire::Introduction& told);
 }  // namespace tapstudy::device

@@ -28,8 +28,9 @@ RemoteHand::RemoteHand(std::uint16_t port, RemoteLimits limits, std::unique_ptr<
       pipe_{std::move(pipe)},
       samples_{limits.max_sample_age_s, 0.0} {
   bool is_misunderstood = false;
+  std::optional<wire::Introduction> told;
   for (int i = 0; i < attempts && version_ == 0; ++i) {
-    is_misunderstood = !greet() || is_misunderstood;
+    is_misunderstood = !greet(told) || is_misunderstood;
     if (version_ == 0) {
       sleep_for(patience);
     }
@@ -45,7 +46,8 @@ RemoteHand::RemoteHand(std::uint16_t port, RemoteLimits limits, std::unique_ptr<
                           port)};
   }
   max_reply_ = limits.max_reply;
-  if (introduction_) {
+  if (told) {
+    introduction_ = description_in(*told);
     samples_ = SampleCheck{limits.max_sample_age_s, introduction_->rate_hz};
   }
 }
@@ -63,21 +65,22 @@ std::string RemoteHand::description() const {
 
 // Asks in both ways at once: a program of version 3 answers the first, an older one the second.
 // False if what came back was neither.
-bool RemoteHand::greet() {
+bool RemoteHand::greet(std::optional<wire::Introduction>& told) {
   const wire::Request introduction{.asked = wire::Asked::introduction, .number = ++number_};
   if (send(encoded(introduction)) != TickFault::none ||
       send(encoded(RemoteRequest{RequestKind::reply, ++number_})) != TickFault::none) {
     return true;
   }
-  return receive([this](std::span<const std::uint8_t> bytes) {
-           return is_understood(bytes) ? Taken::yes : Taken::broken;
+  return receive([&](std::span<const std::uint8_t> bytes) noexcept {
+           return is_understood(bytes, told) ? Taken::yes : Taken::broken;
          }) != TickFault::bad_reply;
 }
 
-bool RemoteHand::is_understood(std::span<const std::uint8_t> bytes) {
-  introduction_ = decoded_introduction(bytes, number_ - 1);
+bool RemoteHand::is_understood(std::span<const std::uint8_t> bytes,
+                               std::optional<wire::Introduction>& told) noexcept {
+  told = decoded_introduction(bytes, number_ - 1);
   const auto reply = decoded_reply(bytes);
-  version_ = introduction_ ? 3 : reply && reply->version < 3 ? reply->version : 0;
+  version_ = told ? 3 : reply && reply->version < 3 ? reply->version : 0;
   return version_ != 0;
 }
 

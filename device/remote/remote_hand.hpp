@@ -27,7 +27,7 @@ struct RemoteLimits {
 class RemoteHand final : public Device {
  public:
   // Asks forty times, for two to four seconds: the other program may still wait for an earlier one.
-  // Throws DeviceError if nobody answers.
+  // Throws DeviceError if nobody answers, or with an introduction that cannot be true.
   RemoteHand(std::uint16_t port, RemoteLimits limits);
   RemoteHand(std::uint16_t port, RemoteLimits limits, std::unique_ptr<DatagramPipe> pipe);
   ~RemoteHand() override;
@@ -61,13 +61,14 @@ class RemoteHand final : public Device {
   LatenessCount round_trips() noexcept;
 
  private:
-  bool greet();
+  bool greet(std::optional<wire::Introduction>& told);
   core::TickFault send(std::span<const std::uint8_t> datagram) noexcept;
   core::TickFault send_force(RequestKind kind) noexcept;
   core::TickFault ask() noexcept;
   template <class Take>
   core::TickFault receive(const Take& take) noexcept;
-  bool is_understood(std::span<const std::uint8_t> bytes);
+  bool is_understood(std::span<const std::uint8_t> bytes,
+                     std::optional<wire::Introduction>& told) noexcept;
   core::TickFault take_reply(double elapsed_s) noexcept;
   core::TickFault fault_of_status(std::uint32_t status) noexcept;
   core::TickFault fault_of_motion(double elapsed_s) noexcept;

@@ -85,4 +85,24 @@ static_assert(offsetof(Introduction, request) == 4 && offsetof(Introduction, mea
               offsetof(Introduction, max_stiffness_n_per_m) == 32 &&
               offsetof(Introduction, rate_hz) == 40 && offsetof(Introduction, release_s) == 48 &&
               offsetof(Introduction, name) == 56 && offsetof(Introduction, serial_number) == 120);
+
+// What an introduction may say. Anything else, not finite numbers included, would make the checks
+// that rest on it meaningless: example/server.hpp does not begin with it, and tapstudy refuses it.
+inline constexpr double max_release_s = 0.15;
+struct Limit {
+  const char* name;
+  const char* unit;
+  double Introduction::*value;
+  double least;
+  double greatest;
+  constexpr bool allows(const Introduction& told) const {
+    return told.*value >= least && told.*value <= greatest;
+  }
+};
+inline constexpr std::array<Limit, 5> limits{
+    {{"radius of the workspace", "m", &Introduction::workspace_radius_m, 1e-3, 10.0},
+     {"maximum force", "N", &Introduction::max_force_n, 0.01, 1000.0},
+     {"maximum stiffness", "N/m", &Introduction::max_stiffness_n_per_m, 1.0, 1e7},
+     {"rate of the samples", "Hz", &Introduction::rate_hz, 20.0, 1e5},
+     {"release time", "s", &Introduction::release_s, 1e-3, max_release_s}}};
 }  // namespace tapstudy::device::wire

@@ -64,6 +64,10 @@ class SerialBoard final : public bridge::Device {
       std::fprintf(stderr, "%s: no board introduces itself\n", path);
       std::exit(1);
     }
+    if (told_.release_s == 0.0) {
+      std::fprintf(stderr, "%s: the board does not release the force by itself\n", path);
+      std::exit(1);
+    }
   }
   ~SerialBoard() override { close(port_); }
 
@@ -140,6 +144,7 @@ class SerialBoard final : public bridge::Device {
     told_.measured_axes = frame[4];
     told_.driven_axes = frame[5];
     told_.rate_hz = taken<std::uint16_t>(frame, 6);
+    told_.release_s = 1e-3 * taken<std::uint16_t>(frame, 8);
     const bridge::wire::Vector limits = vector_at(frame, 10);
     told_.workspace_radius_m = limits[0];
     told_.max_force_n = limits[1];

@@ -51,6 +51,7 @@ class Device {
   Device& operator=(const Device&) = delete;
   Device(Device&&) = delete;
   Device& operator=(Device&&) = delete;
+  // The release time is that of the device, should this program die; 0: it tells none.
   virtual wire::Introduction introduction() = 0;
   // Finite, and at most the maximum force of the introduction.
   virtual void exert(const wire::Vector& force_n) = 0;
@@ -67,7 +68,7 @@ class Server {
  public:
   Server(int port, Device& device)
       : device_{device},
-        max_force_n_{device.introduction().max_force_n},
+        introduction_{introduction_of(device)},
         socket_{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -104,6 +105,20 @@ class Server {
   }
 
  private:
+  // Ends the program where it cannot be true: every force is limited by it.
+  static wire::Introduction introduction_of(Device& device) {
+    wire::Introduction told = device.introduction();
+    told.release_s = std::max(told.release_s, std::chrono::duration<double>(max_silence).count());
+    for (const wire::Limit& limit : wire::limits) {
+      if (!limit.allows(told)) {
+        std::fprintf(stderr, "%s: a %s of %g %s: allowed are %g to %g %s\n", told.name.data(),
+                     limit.name, told.*limit.value, limit.unit, limit.least, limit.greatest,
+                     limit.unit);
+        std::exit(1);
+      }
+    }
+    return told;
+  }
   // Only the newest of the requests that wait is obeyed. They arrived since the queue was empty:
   // was that longer ago than force outlasts a request, because this program was stopped or hung,
   // they exert nothing.
@@ -198,17 +213,15 @@ class Server {
   void exert(wire::Vector force_n) {
     const double size_n = std::hypot(force_n[0], force_n[1], force_n[2]);
     for (double& part_n : force_n) {
-      part_n *= size_n > max_force_n_ ? max_force_n_ / size_n : 1.0;
+      part_n *= size_n > introduction_.max_force_n ? introduction_.max_force_n / size_n : 1.0;
     }
     device_.exert(force_n);
   }
   void obey(const wire::Request& request) {
     if (request.asked == wire::Asked::introduction) {
       exert({});
-      wire::Introduction introduction = device_.introduction();
-      introduction.request = number_;
-      introduction.release_s = std::chrono::duration<double>(max_silence).count();
-      send(socket_, &introduction, sizeof introduction, 0);
+      introduction_.request = number_;
+      send(socket_, &introduction_, sizeof introduction_, 0);
     } else {
       exert(request.force_n);
       reply();
@@ -232,7 +245,7 @@ class Server {
   }
 
   Device& device_;
-  double max_force_n_;
+  wire::Introduction introduction_;
   int socket_;
   sockaddr_in sender_{};
   bool has_sender_ = false;

@@ -13,7 +13,8 @@
 #include "runner/terminal/session_lock.hpp"
 namespace tapstudy::runner {
 namespace {
-constexpr std::chrono::milliseconds tried_silence{150};
+constexpr std::chrono::milliseconds tried_silence{
+    static_cast<int>(1e3 * device::wire::max_release_s + 0.5)};
 
 struct RemoteSection final : protocols::DeviceSection {
   std::uint16_t port{};
@@ -113,9 +114,6 @@ void refuse_beyond(const device::RemoteDescription& device, const DeviceRequest&
          "lower penalty_stiffness_n_per_m in the protocol");
   refuse(max_sample_age_s * device.rate_hz < 1.0, "max_sample_age_s", max_sample_age_s, "s",
          1.0 / device.rate_hz, "at least the time between two samples");
-  const double tried_s = std::chrono::duration<double>{tried_silence}.count();
-  refuse(device.release_s > tried_s, "release of the force", tried_s, "s", device.release_s,
-         "the program must release it earlier");
   refuse(device.driven_axes < 3, "driven axes", 3, "of force", device.driven_axes,
          "taps need a force along each");
 }

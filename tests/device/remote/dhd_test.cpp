@@ -106,3 +106,17 @@ TEST_CASE("an introduction or an unknown request in mid-session leaves the devic
     static_cast<void>(sender.next_reply(std::chrono::milliseconds{5}));
   }
 }
+
+TEST_CASE("a bridge whose limit of force, of stiffness or of space is absurd does not begin",
+          "[device][remote][safety]") {
+  DhdBench bench;
+  const auto [force, stiffness, radius] =
+      GENERATE(table<const char*, const char*, const char*>({{"inf", "3000", "0.05"},
+                                                             {"1e9", "3000", "0.05"},
+                                                             {"4.0", "inf", "0.05"},
+                                                             {"4.0", "3000", "1e-9"}}));
+  testing::ExampleBridge bridge{testing::free_port(),
+                                {testing::dhd_program(), force, stiffness, radius}};
+  CHECK(bridge.exit_code() == 1);
+  CHECK(bench.force_n() == Vec3::Zero());
+}

@@ -1,6 +1,7 @@
 #include "device/remote/remote_hand.hpp"
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -315,7 +316,7 @@ TEST_CASE("a reply of version 3 that breaks a rule of the format is none", "[dev
   CHECK(!device::decoded_reply(bytes));
 }
 
-TEST_CASE("an introduction that leaves open what the device can do is none", "[device][remote]") {
+TEST_CASE("an introduction that breaks a rule of the format is none", "[device][remote]") {
   const Introduction valid = RemoteProgram{3}.introduction;
   REQUIRE(device::decoded_introduction(bytes_of(valid), 0));
   CHECK(!device::decoded_introduction(bytes_of(valid), 1));
@@ -326,12 +327,26 @@ TEST_CASE("an introduction that leaves open what the device can do is none", "[d
   };
   CHECK(!change([](Introduction& told) { told.measured_axes = 5; }));
   CHECK(!change([](Introduction& told) { told.driven_axes = 7; }));
-  CHECK(!change([](Introduction& told) { told.max_force_n = 0.0; }));
-  CHECK(!change([](Introduction& told) { told.workspace_radius_m = HUGE_VAL; }));
-  CHECK(!change([](Introduction& told) { told.max_stiffness_n_per_m = not_known; }));
-  CHECK(!change([](Introduction& told) { told.rate_hz = -1.0; }));
-  CHECK(!change([](Introduction& told) { told.release_s = not_known; }));
   CHECK(!change([](Introduction& told) { told.name[0] = '\x1b'; }));
+}
+
+TEST_CASE(
+    "an introduction that says what no device is, is refused with the value and what is allowed",
+    "[device][remote][safety]") {
+  for (const device::wire::Limit& limit : device::wire::limits) {
+    for (const double absurd :
+         {0.0, -1.0, not_known, HUGE_VAL, 1e9, std::nextafter(limit.least, 0.0),
+          std::nextafter(limit.greatest, HUGE_VAL)}) {
+      CAPTURE(limit.name, absurd);
+      auto program = std::make_unique<RemoteProgram>(3);
+      program->introduction.*limit.value = absurd;
+      CHECK_THROWS_WITH(
+          (device::RemoteHand{40'000, {max_reply}, std::move(program)}),
+          Contains(fmt::format("'a mock' introduces itself with a {} of {:.6g} {}", limit.name,
+                               absurd, limit.unit)) &&
+              Contains(fmt::format("only {:.6g} to {:.6g}", limit.least, limit.greatest)));
+    }
+  }
 }
 
 TEST_CASE(

@@ -141,3 +141,19 @@ TEST_CASE("a tapping point that the device cannot reach is refused with its dist
                     Contains("P1 on plate 'two_fixations' is 33.9 mm") && Contains("P4") &&
                         !Contains("P5") && !Contains("P2"));
 }
+
+TEST_CASE("a limit in a rig that is not finite, zero, negative or absurd is refused with its range",
+          "[runner][rig][safety]") {
+  const std::string text = testing::contents(testing::shipped("rigs/remote.yaml"));
+  for (const char* const limit : {"max_force_n: 5", "max_force_rate_n_per_s: 5000",
+                                  "max_hand_speed_m_s: 2", "workspace_radius_m: 0.05",
+                                  "force_rise_s: 0.5", "force_fall_s: 0.1", "max_reply_s: 0.003"}) {
+    const std::string key{limit, std::string_view{limit}.find(':')};
+    for (const char* const absurd : {".nan", ".inf", "-.inf", "0", "-1", "1e9"}) {
+      CAPTURE(key, absurd);
+      CHECK_THROWS_WITH(
+          runner::parse_rig(replaced(text, limit, key + ": " + absurd), "rig.yaml"),
+          Contains(key + ": ") && Contains("is not allowed (") && Contains("and at most "));
+    }
+  }
+}

@@ -8,10 +8,13 @@
 //
 // The limits are in the data sheet; the centre of the workspace is in the service's frame: x to the
 // right, y away from the operator, z up. The service answers each force with a state, so that one
-// force is always under way, the newest. When tapstudy falls silent the force is zero after 20 ms,
-// when the service does, the bridge says so. What the service does with the last force when this
-// program is killed is up to it: kill it once (kill -9) with nobody at the device before a rig
-// relies on it.
+// force is always under way, the newest. Each state is acknowledged at once: a service may wait for
+// that before it sends the next (Nagle's algorithm), and by itself the kernel takes 40 ms. When
+// tapstudy falls silent the force is zero after 20 ms, when the service does, the bridge says so.
+// What the service does with the last force when this program is killed is up to it: kill it once
+// (kill -9) with nobody at the device before a rig relies on it.
+#include <netinet/tcp.h>
+
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -55,6 +58,7 @@ class Inverse3 final : public bridge::Device {
       service_.handshake("localhost:" + service_port, "/");
       service_.read(received_);
       descriptor_ = beast::get_lowest_layer(service_).native_handle();
+      acknowledge_at_once();
     } catch (const boost::system::system_error& error) {
       give_up(error.what());
     }
@@ -108,11 +112,17 @@ class Inverse3 final : public bridge::Device {
     context_.restart();
     context_.poll();
   }
+  // The kernel forgets it, so that it is said again with each state.
+  void acknowledge_at_once() const {
+    const int yes = 1;
+    setsockopt(descriptor_, IPPROTO_TCP, TCP_QUICKACK, &yes, sizeof yes);
+  }
   void read_next() {
     service_.async_read(received_, [this](const Error& error, std::size_t) {
       if (error) {
         return note(error);
       }
+      acknowledge_at_once();
       states_awaited_ -= states_awaited_ > 0 ? 1 : 0;
       take_message();
       if (states_awaited_ == 0) {

@@ -2,6 +2,8 @@
 //
 //   serial_board PORT DEVICE    and in the rig   device: remote   remote: {port: PORT}
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 
 #include <string>
@@ -51,6 +53,7 @@ class SerialBoard final : public bridge::Device {
       std::perror(path);
       std::exit(1);
     }
+    keep_others_out(path);
     cfmakeraw(&settings);
     tcsetattr(port_, TCSANOW, &settings);
     constexpr int attempts = 100;
@@ -95,6 +98,16 @@ class SerialBoard final : public bridge::Device {
   }
 
  private:
+  // Two programs that drive one board would exert each other's forces. The lock keeps out those
+  // that ask for it, as a second bridge does whoever runs it, the terminal's mode all that open the
+  // port but the superuser's.
+  void keep_others_out(const char* path) {
+    if (flock(port_, LOCK_EX | LOCK_NB) != 0) {
+      std::fprintf(stderr, "%s: the serial port is in use by another program\n", path);
+      std::exit(1);
+    }
+    ioctl(port_, TIOCEXCL);
+  }
   void send(Frame kind, const bridge::wire::Vector& force_n) {
     std::array<std::uint8_t, 18> frame{sync[0], sync[1], static_cast<std::uint8_t>(kind),
                                        ++number_};

@@ -179,7 +179,7 @@ TEST_CASE("the example bridge obeys no request that is older than the last one",
     REQUIRE(reply);
     REQUIRE(reply->number > number);
     number = reply->number;
-    CHECK(reply->exerted_n.x() <= (number == last + 3 ? 2.0 : 1.0));
+    CHECK(reply->exerted_n->x() <= (number == last + 3 ? 2.0 : 1.0));
   }
 }
 
@@ -239,9 +239,11 @@ namespace {
 constexpr auto max_reply = 5ms;
 
 struct Stage {
-  explicit Stage(int version = 2, double rate_hz = 1000.0)
-      : owned{std::make_unique<RemoteProgram>(version)} {
-    program.introduction.rate_hz = rate_hz;
+  explicit Stage(int version = 2, double rate_hz = 1000.0) : owned{program_of(version, rate_hz)} {}
+  static std::unique_ptr<RemoteProgram> program_of(int version, double rate_hz) {
+    auto program = std::make_unique<RemoteProgram>(version);
+    program->introduction.rate_hz = rate_hz;
+    return program;
   }
   std::unique_ptr<RemoteProgram> owned;
   RemoteProgram& program{*owned};

@@ -1,150 +1,15 @@
-#include <fcntl.h>
-#include <stdlib.h>
-#include <unistd.h>
-
-#include <array>
-#include <atomic>
-#include <cstring>
-#include <limits>
-#include <thread>
-#include <vector>
-
 #include "device/remote/remote_hand.hpp"
+#include "support/bridges/mock_board.hpp"
 #include "support/catch.hpp"
 #include "support/example_bridge.hpp"
 using namespace tapstudy;
 using core::TickFault;
 using testing::ExampleBridge;
 using testing::free_port;
+using testing::MockBoard;
 using testing::unhurried;
 
 namespace {
-// CRC-16/CCITT-FALSE by its definition: the remainder of the message's polynomial, bit by bit.
-std::uint16_t remainder_of(const std::vector<std::uint8_t>& bytes) {
-  std::uint32_t rest = 0xFFFF;
-  for (const std::uint8_t byte : bytes) {
-    for (unsigned bit = 0x80; bit != 0; bit >>= 1U) {
-      const bool is_set = ((rest & 0x8000U) != 0) != ((byte & bit) != 0);
-      rest = ((rest << 1U) & 0xFFFFU) ^ (is_set ? 0x1021U : 0U);
-    }
-  }
-  return static_cast<std::uint16_t>(rest);
-}
-
-// A microcontroller at the other end of a pseudo-terminal. It answers each frame with a sample, so
-// that no time is measured.
-class MockBoard {
- public:
-  MockBoard() : master_{posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)} {
-    REQUIRE(grantpt(master_) == 0);
-    REQUIRE(unlockpt(master_) == 0);
-    path_ = ptsname(master_);
-    slave_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);  // a hang-up is ours to cause
-    obeying_ = std::thread{[this] { obey(); }};
-  }
-  ~MockBoard() { unplug(); }
-  MockBoard(const MockBoard&) = delete;
-  MockBoard& operator=(const MockBoard&) = delete;
-  MockBoard(MockBoard&&) = delete;
-  MockBoard& operator=(MockBoard&&) = delete;
-  const std::string& path() const { return path_; }
-  float force_n() const { return force_n_; }
-  // Noise on the line before each frame, and a frame in which one bit is wrong.
-  void be_noisy() { is_noisy_ = true; }
-  void fall_silent() { is_silent_ = true; }
-  void unplug() {
-    if (obeying_.joinable()) {
-      is_over_ = true;
-      const std::array<std::uint8_t, 18> wakes{};
-      static_cast<void>(!write(slave_, wakes.data(), wakes.size()));
-      obeying_.join();
-      close(slave_);
-      close(master_);
-    }
-  }
-
- private:
-  using Bytes = std::vector<std::uint8_t>;
-  template <class Value>
-  static void add(Bytes& frame, Value value) {
-    std::array<std::uint8_t, sizeof value> bytes{};
-    std::memcpy(bytes.data(), &value, sizeof value);
-    frame.insert(frame.end(), bytes.begin(), bytes.end());
-  }
-  void send(const Bytes& content) {
-    Bytes frame{0xA5, 0x5A};
-    frame.insert(frame.end(), content.begin(), content.end());
-    add(frame, remainder_of(content));
-    if (is_noisy_) {
-      Bytes spoilt{0x00, 0xA5, 0xA5, 0x5A, 0x07};
-      spoilt.insert(spoilt.end(), frame.begin(), frame.end());
-      spoilt.back() ^= 0x10U;
-      spoilt.at(5 + 14) ^= 0x40U;
-      frame.insert(frame.begin(), spoilt.begin(), spoilt.end());
-    }
-    static_cast<void>(!write(master_, frame.data(), frame.size()));
-  }
-  void introduce() {
-    Bytes content{2, 0, 3, 3};
-    add(content, std::uint16_t{1000});
-    add(content, std::uint16_t{20});
-    for (const float limit : {0.06F, 3.0F, 2000.0F}) {
-      add(content, limit);
-    }
-    for (const char* const text : {"desk arm", "A7"}) {
-      Bytes field(16);
-      std::memcpy(field.data(), text, std::strlen(text));
-      content.insert(content.end(), field.begin(), field.end());
-    }
-    send(content);
-  }
-  void send_sample() {
-    constexpr float not_measured = std::numeric_limits<float>::quiet_NaN();
-    Bytes content{1, 0};
-    add(content, ++sample_);
-    for (const float value : {0.01F, 0.02F, 0.03F, not_measured, not_measured, not_measured, 0.0F,
-                              force_n_.load(), 0.0F}) {
-      add(content, value);
-    }
-    add(content, std::uint16_t{5});
-    add(content, std::uint16_t{1});
-    send(content);
-  }
-  void obey() {
-    Bytes received;
-    std::array<std::uint8_t, 256> bytes{};
-    while (!is_over_) {
-      const ssize_t count = read(master_, bytes.data(), bytes.size());
-      if (count <= 0) {
-        return;
-      }
-      received.insert(received.end(), bytes.begin(), bytes.begin() + count);
-      for (; received.size() >= 18; received.erase(received.begin(), received.begin() + 18)) {
-        const Bytes content{received.begin() + 2, received.begin() + 16};
-        std::uint16_t crc = 0;
-        std::memcpy(&crc, received.data() + 16, sizeof crc);
-        if (crc != remainder_of(content) || is_silent_) {
-          continue;
-        }
-        float force_n = 0.0F;
-        std::memcpy(&force_n, received.data() + 8, sizeof force_n);
-        force_n_ = received[2] == 1 ? force_n : force_n_.load();
-        received[2] == 1 ? send_sample() : introduce();
-      }
-    }
-  }
-
-  int master_;
-  int slave_{-1};
-  std::string path_;
-  std::atomic<float> force_n_{0.0F};
-  std::atomic<bool> is_noisy_{false};
-  std::atomic<bool> is_silent_{false};
-  std::atomic<bool> is_over_{false};
-  std::uint32_t sample_{0};
-  std::thread obeying_;
-};
-
 // A sample of the board comes a moment after the first request that asks for it.
 TickFault first_reading(device::RemoteHand& hand, core::HandState& state) {
   TickFault fault = TickFault::amplifier_off;
@@ -225,4 +90,18 @@ TEST_CASE("a board that gives no samples, or is unplugged, ends the trial, and t
     fault = hand.read(state, 1e-3);
   }
   CHECK(hand.text() == said);
+}
+
+TEST_CASE("a second program that would drive a board is refused, and the first goes on",
+          "[device][remote][safety]") {
+  MockBoard board;
+  const std::uint16_t port = free_port();
+  const ExampleBridge bridge{port, {testing::serial_board_program(), board.path()}};
+  device::RemoteHand hand{port, {unhurried}};
+  core::HandState state;
+  CHECK(first_reading(hand, state) == TickFault::none);
+  ExampleBridge second{static_cast<std::uint16_t>(port + 1),
+                       {testing::serial_board_program(), board.path()}};
+  CHECK(second.exit_code() == 1);
+  CHECK(first_reading(hand, state) == TickFault::none);
 }

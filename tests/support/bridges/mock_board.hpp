@@ -1,0 +1,162 @@
+#pragma once
+#include <fcntl.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/catch.hpp"
+namespace tapstudy::testing {
+// CRC-16/CCITT-FALSE by its definition: the remainder of the message's polynomial, bit by bit.
+inline std::uint16_t remainder_of(const std::vector<std::uint8_t>& bytes) {
+  std::uint32_t rest = 0xFFFF;
+  for (const std::uint8_t byte : bytes) {
+    for (unsigned bit = 0x80; bit != 0; bit >>= 1U) {
+      const bool is_set = ((rest & 0x8000U) != 0) != ((byte & bit) != 0);
+      rest = ((rest << 1U) & 0xFFFFU) ^ (is_set ? 0x1021U : 0U);
+    }
+  }
+  return static_cast<std::uint16_t>(rest);
+}
+
+// A microcontroller at the other end of a pseudo-terminal. It answers each frame with a sample, so
+// that no time is measured.
+class MockBoard {
+ public:
+  MockBoard() : master_{posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)} {
+    REQUIRE(grantpt(master_) == 0);
+    REQUIRE(unlockpt(master_) == 0);
+    path_ = ptsname(master_);
+    slave_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);  // a hang-up is ours to cause
+    obeying_ = std::thread{[this] { obey(); }};
+  }
+  ~MockBoard() { unplug(); }
+  MockBoard(const MockBoard&) = delete;
+  MockBoard& operator=(const MockBoard&) = delete;
+  MockBoard(MockBoard&&) = delete;
+  MockBoard& operator=(MockBoard&&) = delete;
+  const std::string& path() const { return path_; }
+  float force_n() const { return force_n_; }
+  // The board lets go by itself 20 ms after the last frame.
+  float exerted_n() const {
+    return Clock::now().time_since_epoch().count() - heard_at_ > max_silence ? 0.0F
+                                                                             : force_n_.load();
+  }
+  // Of those sent since the last call.
+  float largest_force_n() { return largest_n_.exchange(0.0F); }
+  void tremble() { tremor_m_ = 1e-4F; }
+  void stand_still() { tremor_m_ = 0.0F; }
+  // Noise on the line before each frame, and a frame in which one bit is wrong.
+  void be_noisy() { is_noisy_ = true; }
+  void fall_silent() { is_silent_ = true; }
+  void unplug() {
+    if (obeying_.joinable()) {
+      is_over_ = true;
+      const std::array<std::uint8_t, 18> wakes{};
+      static_cast<void>(!write(slave_, wakes.data(), wakes.size()));
+      obeying_.join();
+      close(slave_);
+      close(master_);
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr Clock::rep max_silence =
+      std::chrono::nanoseconds{std::chrono::milliseconds{20}}.count();
+  using Bytes = std::vector<std::uint8_t>;
+  template <class Value>
+  static void add(Bytes& frame, Value value) {
+    std::array<std::uint8_t, sizeof value> bytes{};
+    std::memcpy(bytes.data(), &value, sizeof value);
+    frame.insert(frame.end(), bytes.begin(), bytes.end());
+  }
+  void send(const Bytes& content) {
+    Bytes frame{0xA5, 0x5A};
+    frame.insert(frame.end(), content.begin(), content.end());
+    add(frame, remainder_of(content));
+    if (is_noisy_) {
+      Bytes spoilt{0x00, 0xA5, 0xA5, 0x5A, 0x07};
+      spoilt.insert(spoilt.end(), frame.begin(), frame.end());
+      spoilt.back() ^= 0x10U;
+      spoilt.at(5 + 14) ^= 0x40U;
+      frame.insert(frame.begin(), spoilt.begin(), spoilt.end());
+    }
+    static_cast<void>(!write(master_, frame.data(), frame.size()));
+  }
+  void introduce() {
+    Bytes content{2, 0, 3, 3};
+    add(content, std::uint16_t{1000});
+    add(content, std::uint16_t{20});
+    for (const float limit : {0.06F, 3.0F, 2000.0F}) {
+      add(content, limit);
+    }
+    for (const char* const text : {"desk arm", "A7"}) {
+      Bytes field(16);
+      std::memcpy(field.data(), text, std::strlen(text));
+      content.insert(content.end(), field.begin(), field.end());
+    }
+    send(content);
+  }
+  void send_sample() {
+    constexpr float not_measured = std::numeric_limits<float>::quiet_NaN();
+    Bytes content{1, 0};
+    add(content, ++sample_);
+    const float tremor_m = sample_ % 2 == 0 ? tremor_m_.load() : 0.0F;
+    for (const float value : {0.01F + tremor_m, 0.02F, 0.03F, not_measured, not_measured,
+                              not_measured, 0.0F, force_n_.load(), 0.0F}) {
+      add(content, value);
+    }
+    add(content, std::uint16_t{5});
+    add(content, std::uint16_t{1});
+    send(content);
+  }
+  void obey() {
+    Bytes received;
+    std::array<std::uint8_t, 256> bytes{};
+    while (!is_over_) {
+      const ssize_t count = read(master_, bytes.data(), bytes.size());
+      if (count <= 0) {
+        return;
+      }
+      received.insert(received.end(), bytes.begin(), bytes.begin() + count);
+      for (; received.size() >= 18; received.erase(received.begin(), received.begin() + 18)) {
+        const Bytes content{received.begin() + 2, received.begin() + 16};
+        std::uint16_t crc = 0;
+        std::memcpy(&crc, received.data() + 16, sizeof crc);
+        if (crc != remainder_of(content) || is_silent_) {
+          continue;
+        }
+        float force_n = 0.0F;
+        std::memcpy(&force_n, received.data() + 8, sizeof force_n);
+        heard_at_ = Clock::now().time_since_epoch().count();
+        force_n_ = received[2] == 1 ? force_n : force_n_.load();
+        largest_n_ = std::max(largest_n_.load(), force_n_.load());
+        received[2] == 1 ? send_sample() : introduce();
+      }
+    }
+  }
+
+  int master_;
+  int slave_{-1};
+  std::string path_;
+  std::atomic<float> force_n_{0.0F};
+  std::atomic<float> largest_n_{0.0F};
+  std::atomic<float> tremor_m_{0.0F};
+  std::atomic<Clock::rep> heard_at_{0};
+  std::atomic<bool> is_noisy_{false};
+  std::atomic<bool> is_silent_{false};
+  std::atomic<bool> is_over_{false};
+  std::uint32_t sample_{0};
+  std::thread obeying_;
+};
+}  // namespace tapstudy::testing

@@ -1,6 +1,12 @@
 // What every back-end does in every trouble, in one table. A back-end is a row: a class that begins
 // each trouble, or says why it does not apply. Troubles last until the test ends; time is virtual.
 #include <fmt/format.h>
+#include <linux/usbdevice_fs.h>
+#include <signal.h>
+#include <sys/ioctl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <functional>
@@ -13,6 +19,7 @@
 #include "device/hand/prescribed_hand.hpp"
 #include "device/hand/simulated_hand.hpp"
 #include "device/remote/remote_hand.hpp"
+#include "device/usb/guardian.hpp"
 #include "support/catch.hpp"
 #include "support/remote_program.hpp"
 #include "support/staged_loop.hpp"
@@ -58,7 +65,11 @@ struct Expected {
 };
 const Expected no_fault{};
 const std::vector<TickFault> no_reply{TickFault::no_reply, TickFault::periods_missed};
-using Begun = std::variant<Expected, std::string>;  // or why it does not apply
+// A cell that a back-end drives by itself, to this end.
+struct Driven {
+  std::string outcome;
+};
+using Begun = std::variant<Expected, Driven, std::string>;  // or why it does not apply
 
 class BackEnd {
  public:
@@ -73,6 +84,7 @@ class BackEnd {
   // Since they were forgotten.
   virtual int packets_with_force() { return 0; }
   virtual bool exerts_force() { return false; }
+  virtual bool forces_another() { return false; }
 };
 
 // SPIDAR-G6: the real libusb on a simulated board.
@@ -91,6 +103,7 @@ class SpidarRow final : public BackEnd {
     loop.tick(400);
     on_bus_.hardware.hold_at({0.0, -0.012, 0.0});
     loop.tick(400);
+    note_request_with_force();
   }
   Begun begin(const Cell& cell) override {
     switch (cell.trouble) {
@@ -111,10 +124,9 @@ class SpidarRow final : public BackEnd {
       case Trouble::not_a_number:
         return "its counters are integers";
       case Trouble::killed:
-        return "shown by tests/device/usb/guardian_test.cpp, 'however the program dies'";
+        return guarded({SIGKILL});
       case Trouble::stopped_and_continued:
-        clock_.lateness = 30'000'000'000;  // without the guardian: that is guardian_test.cpp
-        return Expected{{TickFault::loop_stalled}};
+        return guarded({SIGSTOP, SIGSTOP});
       case Trouble::unplugged:
         on_bus_.bus.unplug();
         return Expected{{TickFault::device_gone}, false};
@@ -122,7 +134,7 @@ class SpidarRow final : public BackEnd {
         on_bus_.bus.persist_in(FakeBus::Trouble::out_lost);
         return Expected{{TickFault::no_reply}, false};
       case Trouble::second_device:
-        return "shown by tests/end_to_end/spidar_session_test.cpp, two boards";
+        return beside_a_second_one();
       default:
         return begin_on_usb(cell.name);
     }
@@ -135,6 +147,9 @@ class SpidarRow final : public BackEnd {
         }));
   }
   bool exerts_force() override { return on_bus_.hardware.tension_n().maxCoeff() > 0.0; }
+  bool forces_another() override {
+    return second_ && second_->hardware.tension_n().maxCoeff() > 0.0;
+  }
 
   testing::SpidarOnBus& on_bus() { return on_bus_; }
   void tighten() {
@@ -151,6 +166,71 @@ class SpidarRow final : public BackEnd {
     Nanoseconds now() noexcept override { return FakeBus::now(); }
     void pass_to(Nanoseconds moment) noexcept override { FakeBus::pass_to(moment); }
   };
+  // Another program has the board, and gives it the forces of this row's last request before each
+  // of these signals. It has a guardian of its own.
+  Driven guarded(const std::vector<int>& signals) {
+    const pid_t program = fork();
+    if (program == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      hold_board(signals);
+    }
+    for (const int signal : signals) {
+      int status = 0;
+      REQUIRE(waitpid(program, &status, WUNTRACED) == program);
+      REQUIRE((signal == SIGSTOP ? WIFSTOPPED(status) : WIFSIGNALED(status)));
+      REQUIRE(packets_with_force() == 1);
+      while (!is_last_without_force()) {
+        usleep(200);
+      }
+      forget_packets();
+      signal == SIGSTOP ? kill(program, SIGCONT) : 0;
+    }
+    if (signals.back() == SIGSTOP) {
+      kill(program, SIGKILL);
+      waitpid(program, nullptr, 0);
+    }
+    return {fmt::format("force off by the guardian, {}", signals.size() == 1 ? "once" : "twice")};
+  }
+  [[noreturn]] void hold_board(const std::vector<int>& signals) {
+    constexpr double max_stall_s = 0.02;
+    const device::UsbNode node{on_bus_.bus.open()};
+    device::Guardian guardian{node,
+                              {testing::out_endpoint, testing::in_endpoint,
+                               on_bus_.board->zero_force_packet(), max_stall_s, 0}};
+    guardian.channel().begin();
+    for (const int signal : signals) {
+      usbdevfs_bulktransfer transfer{testing::out_endpoint,
+                                     static_cast<unsigned>(request_with_force_.size()), 0,
+                                     request_with_force_.data()};
+      on_bus_.bus.ioctl(USBDEVFS_BULK, &transfer);
+      raise(signal);
+    }
+    while (true) {
+      pause();
+    }
+  }
+  // Of the packets that set outputs.
+  bool is_last_without_force() const {
+    const std::vector<testing::Bytes> all = on_bus_.bus.requests();
+    const auto last = std::find_if(all.rbegin(), all.rend(), [](const testing::Bytes& request) {
+      return !testing::outputs_in(request).empty();
+    });
+    return last != all.rend() && testing::has_no_force(*last);
+  }
+  void note_request_with_force() {
+    const std::vector<testing::Bytes> all = on_bus_.bus.requests();
+    const auto last = std::find_if(all.rbegin(), all.rend(), [](const testing::Bytes& request) {
+      return !testing::outputs_in(request).empty() && !testing::has_no_force(request);
+    });
+    REQUIRE(last != all.rend());
+    request_with_force_ = *last;
+  }
+  // This one's session goes on, and none of its forces reaches the other.
+  Begun beside_a_second_one() {
+    second_ = std::make_unique<testing::SpidarOnBus>(on_bus_.product, max_reply);
+    REQUIRE(second_->spidar.tighten(0.0) == TickFault::none);
+    return no_fault;
+  }
   bool is_sh4() const { return on_bus_.product == device::sh4_product; }
   void home() {
     tighten();
@@ -225,6 +305,8 @@ class SpidarRow final : public BackEnd {
   }
 
   testing::SpidarOnBus on_bus_;
+  std::unique_ptr<testing::SpidarOnBus> second_;
+  testing::Bytes request_with_force_;
   Clock clock_;
 };
 
@@ -271,7 +353,8 @@ class RemoteRow final : public BackEnd {
       case Trouble::not_a_number:
         return meet(RemoteTrouble::not_a_number, {TickFault::non_finite_force});
       case Trouble::killed:
-        return "shown by remote_hand_test.cpp, 'lets go of the force when nobody asks'";
+        return "shown by bridge_conformance_test.cpp with version 3; what a program of versions 1 "
+               "and 2 does is tried at session start";
       case Trouble::stopped_and_continued:
         clock_.lateness = 30'000'000'000;
         return Expected{{TickFault::loop_stalled}};
@@ -283,7 +366,7 @@ class RemoteRow final : public BackEnd {
                    : Begun{meet(RemoteTrouble::never_lets_go, {TickFault::force_not_followed},
                                 false)};
       case Trouble::second_device:
-        return "shown by remote_hand_test.cpp, 'obeys one sender'";
+        return "shown by bridge_conformance_test.cpp, 'second sender'";
       default:
         return begin_on_the_wire(cell.name);
     }
@@ -530,6 +613,9 @@ Outcome outcome_of(const Row& row, const Cell& cell, State state) {
   if (const auto* const why = std::get_if<std::string>(&begun_as)) {
     return {"does not apply: " + *why};
   }
+  if (const auto* const driven = std::get_if<Driven>(&begun_as)) {
+    return {driven->outcome};
+  }
   const auto& expected = std::get<Expected>(begun_as);
   if (state != State::stopping) {
     stage.tick(expected.found.empty() ? 300 : enough_ticks);
@@ -549,6 +635,7 @@ Outcome outcome_of(const Row& row, const Cell& cell, State state) {
   CHECK(is_confirmed == expected.is_stop_confirmed);
   CHECK((is_confirmed || !back_end->device().is_force_off()));
   CHECK((!is_confirmed || found == TickFault::none || !back_end->exerts_force()));
+  CHECK_FALSE(back_end->forces_another());
   if (found != TickFault::none) {
     const int with_force = back_end->packets_with_force();
     stage.tick(50);
@@ -584,6 +671,9 @@ TEST_CASE("a fault while the strings are tightened leaves none of them pulled",
           "[device][safety][usb]") {
   const std::uint16_t board = GENERATE(device::sh4_product, device::simple_product);
   for (const Cell& cell : all_cells()) {
+    if (cell.trouble == Trouble::killed || cell.trouble == Trouble::stopped_and_continued) {
+      continue;  // what another program does
+    }
     SpidarRow row{board};
     row.tighten();
     const Begun begun_as = row.begin(cell);

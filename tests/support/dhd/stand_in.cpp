@@ -2,6 +2,9 @@
 
 #include <dhdc.h>
 
+#include <algorithm>
+#include <chrono>
+
 #include "support/mapped_stand_in.hpp"
 namespace {
 using tapstudy::testing::DhdStandIn;
@@ -40,10 +43,11 @@ const char* dhdGetSystemName(char /*id*/) {
   return "stand-in";
 }
 int dhdGetPosition(double* x_m, double* y_m, double* z_m, char /*id*/) {
-  *x_m = 0.01;
+  static int samples = 0;
+  *x_m = 0.01 + (++samples % 2 == 0 ? device().tremor_m.load() : 0.0);
   *y_m = 0.02;
   *z_m = 0.03;
-  return outcome();
+  return device().is_hung ? DHD_TIMEGUARD : outcome();
 }
 int dhdGetLinearVelocity(double* x_m_s, double* y_m_s, double* z_m_s, char /*id*/) {
   *x_m_s = *y_m_s = *z_m_s = 0.0;
@@ -53,6 +57,8 @@ int dhdSetForce(double x_n, double y_n, double z_n, char /*id*/) {
   device().force_n[0] = x_n;
   device().force_n[1] = y_n;
   device().force_n[2] = z_n;
+  device().largest_n = std::max(device().largest_n.load(), z_n);
+  device().asked_at_ns = std::chrono::steady_clock::now().time_since_epoch().count();
   return outcome();
 }
 unsigned int dhdGetButtonMask(char /*id*/) {

@@ -2,6 +2,7 @@
 
 #include <HD/hd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <stop_token>
 #include <thread>
@@ -17,6 +18,7 @@ OpenHapticsStandIn& device() {
 HDSchedulerCallback scheduled = nullptr;
 void* scheduled_data = nullptr;
 std::jthread servo;
+int frames = 0;
 }  // namespace
 
 HHD hdInitDevice(const char* /*name*/) {
@@ -39,7 +41,9 @@ void hdStartScheduler() {
   device().is_running = true;
   servo = std::jthread{[](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-      scheduled(scheduled_data);
+      if (!device().is_hung) {
+        scheduled(scheduled_data);
+      }
       std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
   }};
@@ -53,7 +57,7 @@ void hdEndFrame(HHD /*id*/) {}
 void hdGetDoublev(HDenum parameter, HDdouble* values) {
   switch (parameter) {
     case HD_CURRENT_POSITION:
-      values[0] = 10.0;
+      values[0] = 10.0 + (++frames % 2 == 0 ? 1e3 * device().tremor_m : 0.0);
       values[1] = 20.0;
       values[2] = 30.0;
       break;
@@ -79,6 +83,7 @@ void hdSetDoublev(HDenum /*parameter*/, const HDdouble* values) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     device().force_n[axis] = device().is_gone ? 0.0 : values[axis];
   }
+  device().largest_n = std::max(device().largest_n.load(), device().force_n[1].load());
 }
 const char* hdGetString(HDenum parameter) {
   return parameter == HD_DEVICE_MODEL_TYPE ? "stand-in" : "4711";

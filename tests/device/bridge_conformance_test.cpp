@@ -1,0 +1,359 @@
+// The example bridges and their devices in every trouble, in one table, as programs of their own. A
+// bridge is a row: its device, which can be hung, frozen and unplugged. Time is real: what takes
+// long because the machine is busy is waited for.
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "device/remote/remote_hand.hpp"
+#include "support/bridges/mock_board.hpp"
+#include "support/bridges/service_stand_in.hpp"
+#include "support/catch.hpp"
+#include "support/dhd/stand_in.hpp"
+#include "support/example_bridge.hpp"
+#include "support/mapped_stand_in.hpp"
+#include "support/openhaptics/stand_in.hpp"
+#include "support/rogue_sender.hpp"
+using namespace tapstudy;
+using core::TickFault;
+using core::Vec3;
+using device::StopOutcome;
+
+namespace {
+constexpr double pressed_n = 2.0;
+
+// The device behind a bridge. Its hand trembles, until it is frozen.
+class BridgedDevice {
+ public:
+  virtual ~BridgedDevice() = default;
+  virtual std::vector<std::string> command() = 0;  // of the bridge, without the port
+  virtual double max_force_n() const = 0;
+  virtual double exerted_n() = 0;  // upwards, now
+  // Of the forces that it was told to exert since the last call.
+  virtual double largest_n() = 0;
+  virtual void hang() = 0;  // no sample is new
+  virtual void freeze() = 0;
+  virtual void unplug() = 0;
+  // Who lets go where the bridge, or the device's own program, is killed or hangs; empty: the
+  // device.
+  virtual std::string without_bridge() const { return {}; }
+  virtual std::string when_hung() const { return {}; }
+};
+
+class SerialBoardRow final : public BridgedDevice {
+ public:
+  SerialBoardRow() { board_.tremble(); }
+  std::vector<std::string> command() override {
+    return {testing::serial_board_program(), board_.path()};
+  }
+  double max_force_n() const override { return 3.0; }
+  double exerted_n() override { return static_cast<double>(board_.exerted_n()); }
+  double largest_n() override { return static_cast<double>(board_.largest_force_n()); }
+  void hang() override { board_.fall_silent(); }
+  void freeze() override { board_.stand_still(); }
+  void unplug() override { board_.unplug(); }
+
+ private:
+  testing::MockBoard board_;
+};
+
+// Its watchdog is the device's own.
+class DhdRow final : public BridgedDevice {
+ public:
+  DhdRow() { device().tremor_m = 1e-4; }
+  std::vector<std::string> command() override {
+    return {testing::dhd_program(), "4.0", "3000", "0.05"};
+  }
+  double max_force_n() const override { return 4.0; }
+  double exerted_n() override {
+    const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+    const bool is_released = now_ns - device().asked_at_ns > 125'000LL * device().watchdog;
+    return is_released || !device().is_force_enabled ? 0.0 : device().force_n[2].load();
+  }
+  double largest_n() override { return device().largest_n.exchange(0.0); }
+  void hang() override { device().is_hung = true; }
+  void freeze() override { device().tremor_m = 0.0; }
+  void unplug() override { device().is_gone = true; }
+
+ private:
+  testing::DhdStandIn& device() { return shared_.device(); }
+  testing::MappedStandIn<testing::DhdStandIn> shared_;
+};
+
+class OpenHapticsRow final : public BridgedDevice {
+ public:
+  OpenHapticsRow() { device().tremor_m = 1e-4; }
+  std::vector<std::string> command() override { return {testing::openhaptics_program()}; }
+  double max_force_n() const override { return 3.3; }
+  double exerted_n() override { return device().force_n[1]; }
+  double largest_n() override { return device().largest_n.exchange(0.0); }
+  void hang() override { device().is_hung = true; }
+  void freeze() override { device().tremor_m = 0.0; }
+  void unplug() override { device().is_gone = true; }
+  std::string without_bridge() const override { return "the vendor's driver must let go"; }
+  std::string when_hung() const override { return without_bridge(); }
+
+ private:
+  testing::OpenHapticsStandIn& device() { return shared_.device(); }
+  testing::MappedStandIn<testing::OpenHapticsStandIn> shared_;
+};
+
+class Inverse3Row final : public BridgedDevice {
+ public:
+  Inverse3Row() { service_.tremble(); }
+  std::vector<std::string> command() override { return service_.command(); }
+  double max_force_n() const override { return 8.0; }
+  double exerted_n() override { return is_unplugged_ ? 0.0 : service_.force_n().z(); }
+  double largest_n() override { return service_.largest_force_n(); }
+  void hang() override { service_.is_silent = true; }
+  void freeze() override { service_.stand_still(); }
+  void unplug() override {
+    service_.end();
+    is_unplugged_ = true;
+  }
+  std::string without_bridge() const override { return "the vendor's service must let go"; }
+
+ private:
+  testing::ServiceStandIn service_;
+  bool is_unplugged_{false};
+};
+
+template <class Condition>
+void wait_until(const Condition& is_so) {
+  while (!is_so()) {
+    std::this_thread::sleep_for(std::chrono::microseconds{200});
+  }
+}
+
+// One tick. elapsed_s is what the checks are told, shorter than any tick here takes. After a fault
+// the next trial begins.
+TickFault press(device::RemoteHand& hand, double force_n, double elapsed_s = 1e-5) {
+  core::HandState state;
+  TickFault fault = hand.write({0.0, force_n, 0.0});
+  fault = fault == TickFault::none ? hand.read(state, elapsed_s) : fault;
+  if (fault != TickFault::none) {
+    static_cast<void>(hand.begin());
+  }
+  return fault;
+}
+void press_until(device::RemoteHand& hand, BridgedDevice& row, double force_n, double exerted_n) {
+  while (std::abs(row.exerted_n() - exerted_n) > 1e-6) {
+    static_cast<void>(press(hand, force_n));
+  }
+}
+
+constexpr double max_sample_age_s = 1.0;  // a busy machine may keep anybody from the processor
+struct Bench {
+  BridgedDevice& row;
+  std::uint16_t port{testing::free_port()};
+  testing::ExampleBridge bridge{port, row.command()};
+};
+// With force on.
+struct Pressed : Bench {
+  explicit Pressed(BridgedDevice& its_row, std::chrono::microseconds max_reply = testing::unhurried)
+      : Bench{its_row}, hand{port, {max_reply, max_sample_age_s}} {
+    press_until(hand, row, pressed_n, pressed_n);
+  }
+  device::RemoteHand hand;
+};
+
+// Another tapstudy, which presses whatever it is told, until it is killed.
+class OtherTapstudy {
+ public:
+  explicit OtherTapstudy(std::uint16_t port) : child_{fork()} {
+    if (child_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      device::RemoteHand hand{port, {testing::unhurried, max_sample_age_s}};
+      while (true) {
+        static_cast<void>(press(hand, pressed_n));
+      }
+    }
+  }
+  ~OtherTapstudy() { end(); }
+  OtherTapstudy(const OtherTapstudy&) = delete;
+  OtherTapstudy& operator=(const OtherTapstudy&) = delete;
+  OtherTapstudy(OtherTapstudy&&) = delete;
+  OtherTapstudy& operator=(OtherTapstudy&&) = delete;
+  void end() {
+    if (child_ > 0) {
+      kill(child_, SIGKILL);
+      waitpid(child_, nullptr, 0);
+      child_ = -1;
+    }
+  }
+  void stop() {
+    int status = 0;
+    kill(child_, SIGSTOP);
+    REQUIRE(waitpid(child_, &status, WUNTRACED) == child_);
+    REQUIRE(WIFSTOPPED(status));
+  }
+  void go_on() { kill(child_, SIGCONT); }
+
+ private:
+  pid_t child_;
+};
+
+std::string force(BridgedDevice& row) {
+  Pressed pressed{row};
+  press_until(pressed.hand, row, 300.0, row.max_force_n());
+  CHECK(row.largest_n() <= row.max_force_n() + 1e-6);
+  while (pressed.hand.zero_force() != StopOutcome::confirmed) {  // the machine may be busy
+  }
+  CHECK(row.exerted_n() == 0.0);
+  return "as asked, at most its limit, and off when the stop is confirmed";
+}
+
+std::string tapstudy_killed(BridgedDevice& row) {
+  Bench bench{row};
+  OtherTapstudy other{bench.port};
+  wait_until([&] { return row.exerted_n() == pressed_n; });
+  other.end();
+  wait_until([&] { return row.exerted_n() == 0.0; });
+  return "force off";
+}
+
+std::string tapstudy_stopped(BridgedDevice& row) {
+  Bench bench{row};
+  OtherTapstudy other{bench.port};
+  for (int i = 0; i < 2; ++i) {
+    wait_until([&] { return row.exerted_n() == pressed_n; });
+    other.stop();
+    wait_until([&] { return row.exerted_n() == 0.0; });
+    other.go_on();
+  }
+  return "force off, twice";
+}
+
+std::string bridge_killed(BridgedDevice& row) {
+  Pressed pressed{row};
+  pressed.bridge.end();
+  TickFault fault = TickFault::none;
+  for (int i = 0; i < 3 && fault == TickFault::none; ++i) {
+    fault = press(pressed.hand, pressed_n);
+  }
+  CHECK(fault == TickFault::device_gone);
+  CHECK(pressed.hand.emergency_stop() == StopOutcome::unconfirmed);
+  CHECK_FALSE(pressed.hand.is_force_off());
+  if (row.without_bridge().empty()) {
+    wait_until([&] { return row.exerted_n() == 0.0; });
+  }
+  return fmt::format("{}, {}", core::to_text(fault),
+                     row.without_bridge().empty() ? "force off" : row.without_bridge());
+}
+
+std::string bridge_stopped(BridgedDevice& row) {
+  Pressed pressed{row, std::chrono::milliseconds{6}};
+  pressed.bridge.stop();
+  for (int i = 0; i < 5; ++i) {  // 30 ms of requests, which wait
+    static_cast<void>(press(pressed.hand, pressed_n));
+  }
+  if (row.without_bridge().empty()) {
+    wait_until([&] { return row.exerted_n() == 0.0; });
+  }
+  row.largest_n();
+  pressed.bridge.go_on();
+  while (pressed.hand.zero_force() != StopOutcome::confirmed) {
+  }
+  CHECK(row.largest_n() == 0.0);
+  CHECK(row.exerted_n() == 0.0);
+  return fmt::format("{}; continued it exerts nothing that waited",
+                     row.without_bridge().empty() ? "force off" : row.without_bridge());
+}
+
+std::string found(BridgedDevice& row, void (BridgedDevice::*trouble)(), const std::string& who) {
+  Pressed pressed{row};
+  (row.*trouble)();
+  while (press(pressed.hand, pressed_n) != TickFault::amplifier_off) {
+  }
+  const std::string said{pressed.hand.text()};
+  CHECK_FALSE(said.empty());
+  CHECK(pressed.hand.emergency_stop() == StopOutcome::unconfirmed);
+  if (who.empty()) {
+    wait_until([&] { return row.exerted_n() == 0.0; });
+  }
+  return fmt::format("'{}', {}, stop unconfirmed", said, who.empty() ? "force off" : who);
+}
+std::string device_hung(BridgedDevice& row) {
+  return found(row, &BridgedDevice::hang, row.when_hung());
+}
+std::string device_unplugged(BridgedDevice& row) {
+  return found(row, &BridgedDevice::unplug, {});
+}
+
+// A hand that moves is no frozen one; one that does not move though force changes by 1 N is.
+std::string device_frozen(BridgedDevice& row) {
+  Pressed pressed{row};
+  for (int i = 0; i < 200; ++i) {
+    CHECK(press(pressed.hand, i % 2 == 0 ? pressed_n : 0.0) != TickFault::position_frozen);
+  }
+  row.freeze();
+  for (int i = 0; i < 10; ++i) {
+    static_cast<void>(press(pressed.hand, pressed_n));
+  }
+  while (press(pressed.hand, pressed_n + 1.0, 1e-3) != TickFault::position_frozen) {
+  }
+  return core::to_text(TickFault::position_frozen);
+}
+
+std::string second_sender(BridgedDevice& row) {
+  Pressed pressed{row};
+  testing::RogueSender rogue{pressed.port};
+  row.largest_n();
+  for (int i = 0; i < 50; ++i) {
+    rogue.send({0.0, row.max_force_n(), 0.0});
+    rogue.send({0.0, -1.0, 0.0});
+    static_cast<void>(press(pressed.hand, pressed_n));
+    const double exerted_n = row.exerted_n();
+    CHECK((exerted_n == pressed_n || exerted_n == 0.0));  // let go, where the machine is busy
+  }
+  CHECK(row.largest_n() <= pressed_n);
+  return "not heard";
+}
+
+struct BridgeRow {
+  const char* name;
+  std::function<std::unique_ptr<BridgedDevice>()> make;
+};
+struct BridgeCell {
+  const char* name;
+  std::string (*show)(BridgedDevice& row);
+};
+}  // namespace
+
+TEST_CASE(
+    "each example bridge, in each trouble: force is as asked or off, a dead device is found, no "
+    "stop is called confirmed that is not, and who must let go without the bridge is said",
+    "[device][safety][remote][conformance]") {
+  const std::vector<BridgeRow> rows{
+      {"serial_board", [] { return std::make_unique<SerialBoardRow>(); }},
+      {"dhd", [] { return std::make_unique<DhdRow>(); }},
+      {"openhaptics", [] { return std::make_unique<OpenHapticsRow>(); }},
+      {"inverse3", [] { return std::make_unique<Inverse3Row>(); }}};
+  const std::vector<BridgeCell> cells{{"force", force},
+                                      {"killed", tapstudy_killed},
+                                      {"stopped, continued, stopped", tapstudy_stopped},
+                                      {"bridge killed", bridge_killed},
+                                      {"bridge stopped and continued", bridge_stopped},
+                                      {"hung", device_hung},
+                                      {"unplugged", device_unplugged},
+                                      {"frozen position", device_frozen},
+                                      {"second sender", second_sender}};
+  for (const BridgeCell& cell : cells) {
+    fmt::print("  {}\n", cell.name);
+    for (const BridgeRow& row : rows) {
+      CAPTURE(cell.name, row.name);
+      const std::unique_ptr<BridgedDevice> device = row.make();
+      fmt::print("    {:<16}{}\n", row.name, cell.show(*device));
+    }
+  }
+}

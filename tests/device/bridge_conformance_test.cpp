@@ -254,8 +254,8 @@ std::string bridge_killed(BridgedDevice& row) {
 std::string bridge_stopped(BridgedDevice& row) {
   Pressed pressed{row, std::chrono::milliseconds{6}};
   pressed.bridge.stop();
-  for (int i = 0; i < 5; ++i) {  // 30 ms of requests, which wait
-    static_cast<void>(press(pressed.hand, pressed_n));
+  for (int i = 0; i < 5; ++i) {  // 30 ms of requests for more, which wait
+    static_cast<void>(press(pressed.hand, 1.5 * pressed_n));
   }
   if (row.without_bridge().empty()) {
     wait_until([&] { return row.exerted_n() == 0.0; });
@@ -264,7 +264,7 @@ std::string bridge_stopped(BridgedDevice& row) {
   pressed.bridge.go_on();
   while (pressed.hand.zero_force() != StopOutcome::confirmed) {
   }
-  CHECK(row.largest_n() == 0.0);
+  CHECK(row.largest_n() <= pressed_n);  // what it was about to send may still go
   CHECK(row.exerted_n() == 0.0);
   return fmt::format("{}; continued it exerts nothing that waited",
                      row.without_bridge().empty() ? "force off" : row.without_bridge());

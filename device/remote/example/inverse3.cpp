@@ -82,6 +82,7 @@ class Inverse3 final : public bridge::Device {
   }
   void exert(const bridge::wire::Vector& force_n) override {
     force_n_ = force_n;
+    asked_at_ = bridge::Clock::now();
     // Letting go does not wait for the service's next state. It is sent once: if each zero force
     // were, states would queue at a service that sends the next one when the last is acknowledged,
     // and all further ones would arrive late.
@@ -136,6 +137,9 @@ class Inverse3 final : public bridge::Device {
     if (is_sending_ || !trouble_.empty()) {
       is_changed_ = true;
       return;
+    }
+    if (bridge::Clock::now() - asked_at_ > bridge::max_silence) {
+      force_n_ = {};  // this program was stopped in between
     }
     is_sending_ = true;
     is_changed_ = false;
@@ -199,6 +203,7 @@ class Inverse3 final : public bridge::Device {
   bool is_changed_ = false;
   int states_awaited_ = 0;
   bridge::wire::Vector force_n_{};
+  bridge::Clock::time_point asked_at_{};
   bridge::wire::Vector force_sent_n_{};
   bridge::wire::Reply newest_;
   bridge::Clock::time_point taken_at_{};

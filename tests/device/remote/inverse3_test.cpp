@@ -96,26 +96,6 @@ TEST_CASE("a service of the Inverse3 that hangs or ends is told, and gets a zero
   }
 }
 
-TEST_CASE(
-    "the Inverse3's states do not wait for acknowledgements: a stop is confirmed by two of them, "
-    "though the service has sent one that nothing answers",
-    "[device][remote][safety]") {
-  const ServiceStandIn service;
-  const std::uint16_t port = testing::free_port();
-  const testing::ExampleBridge bridge{port, service.command()};
-  device::RemoteHand hand{port, {unhurried, 1.0}};
-  core::HandState state;
-  int confirmed = 0;
-  for (int stop = 0; stop < 10; ++stop) {  // some may be late because the machine is busy
-    while (service.force_n().z() != 2.0) {
-      static_cast<void>(hand.write({0.0, 2.0, 0.0}));
-      static_cast<void>(hand.read(state, 1e-3));
-    }
-    confirmed += hand.zero_force() == device::StopOutcome::confirmed ? 1 : 0;
-  }
-  CHECK(confirmed > 0);
-}
-
 TEST_CASE("the bridge of the Inverse3 ends where the service knows none", "[device][remote]") {
   const ServiceStandIn service{false};
   testing::ExampleBridge bridge{testing::free_port(), service.command()};

@@ -29,7 +29,9 @@ char separator_of(std::string_view header) {
       return separator;
     }
   }
-  return ',';
+  const bool has_only_names =
+      header.starts_with('"') && outside.find_first_not_of(" \"\r") == std::string::npos;
+  return has_only_names && header.find("\" \"") != std::string::npos ? ' ' : ',';
 }
 
 class CsvReader {
@@ -125,6 +127,16 @@ std::optional<double> CsvText::number(std::string cell) const {
     std::ranges::replace(cell, ',', '.');
   }
   return core::number_in<double>(std::string_view{cell}.substr(cell.starts_with('+') ? 1 : 0));
+}
+
+std::optional<std::int64_t> count_in_cell(const CsvText& table, const std::string& cell) {
+  const std::size_t end = cell.find_first_of(table.separator == ',' ? "." : ".,");
+  const std::string decimals = end == std::string::npos ? "0" : cell.substr(end + 1);
+  constexpr std::size_t of_thousands = 3;  // in 1.000 the point may stand between thousands
+  const bool is_whole = !decimals.empty() && decimals.size() != of_thousands &&
+                        decimals.find_first_not_of('0') == std::string::npos;
+  const auto count = core::number_in<std::int64_t>(cell.substr(0, end));
+  return is_whole && count && *count >= 0 ? count : std::nullopt;
 }
 
 std::string CsvText::place(const std::string& file, int row) const {

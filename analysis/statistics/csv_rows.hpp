@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <istream>
 #include <optional>
 #include <string>
@@ -22,14 +23,18 @@ struct CsvText {
   std::string place(const std::string& file, int row) const;
 };
 
+// A count from 0, also where it is written as "3.0"; unset for what is none.
+std::optional<std::int64_t> count_in_cell(const CsvText& table, const std::string& cell);
+
 // All of a table's file. Throws InvalidInput beyond 64 MB.
 std::string table_text(std::istream& text, const std::string& file);
 
 // Comma-separated values (RFC 4180), or separated by tabulators or semicolons where the header has
-// any: cells in double quotes may hold separators, quotes and line ends; spaces around other cells
-// do not count; empty lines and a byte order mark are skipped. Throws InvalidInput with file:line
-// for a quote that is out of place or left open, for what is no UTF-8 text, and for a file beyond
-// 64 MB. An apostrophe that guards a cell from being run as a formula is no part of it
+// any, or by spaces where it has nothing but quoted names, as R's write.table has it: cells in
+// double quotes may hold separators, quotes and line ends; spaces around other cells do not count;
+// empty lines and a byte order mark are skipped. Throws InvalidInput with file:line for a quote
+// that is out of place or left open, for what is no UTF-8 text, and for a file beyond 64 MB. An
+// apostrophe that guards a cell from being run as a formula is no part of it
 // (core/text/spreadsheet_cell.hpp).
 CsvText read_csv(std::istream& text, const std::string& file);
 

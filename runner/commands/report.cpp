@@ -138,7 +138,7 @@ bool reads_columns(const ReportOptions& options) {
   return options.table.columns.are_given() || !options.table.conditions.empty() ||
          !options.responses.empty() || !options.order.empty() || !options.table.encoding.empty() ||
          options.table.merges_alike || options.table.pools_runs || options.table.counts_practice ||
-         !options.rows.empty();
+         options.table.are_counts || !options.rows.empty();
 }
 
 TableOptions table_options(const ReportOptions& options) {
@@ -196,8 +196,8 @@ void check_options(const ReportOptions& options) {
   if (!options.directories.empty() && reads_columns(options)) {
     throw core::InvalidInput{
         "options with columns, --where, --responses, --order, --weights, --encoding, "
-        "--merge-alike, "
-        "--pool-runs, --count-practice and --rows say how to read --counts FILE.csv"};
+        "--merge-alike, --pool-runs, --count-practice, --are-counts and --rows say how to read "
+        "--counts FILE.csv"};
   }
   if (options.directories.size() > 1 && options.out.empty()) {
     throw core::InvalidInput{"--out: a report of several directories needs one of its own"};
@@ -235,7 +235,8 @@ void add_report(CommandParser& line) {
   command.option("--stimulus-column", columns.stimulus, "With --counts: which was presented");
   command.option("--response-column", columns.response, "With --counts: what was answered");
   command.option("--participant-column", columns.participant,
-                 "With --counts: by whom; without it, each of several files is one participant's");
+                 "With --counts: by whom; without it, each of several files is one participant's; "
+                 "none: not known");
   command.option("--time-column", columns.time, "With --counts: the response time");
   command.one_of("--time-unit", options->time_unit, {"s", "ms"},
                  "Of the response time; default: from the column's name or the file's format");
@@ -264,6 +265,9 @@ void add_report(CommandParser& line) {
                "With --counts: several runs of one participant count together");
   command.flag("--count-practice", options->table.counts_practice,
                "With --counts: rows that a column calls practice count like others");
+  command.flag("--are-counts", options->table.are_counts,
+               "With --counts: numbers are counts even where they add up to 100, as percentages "
+               "do, or one is the sum of the others");
   command.one_of(
       "--rows", options->rows, {"stimuli", "responses"},
       "With --counts: what the rows of a matrix stand for, if its header does not say it");

@@ -50,7 +50,7 @@ NamedCsv read_file(const std::string& file, const std::string& encoding) {
   std::istringstream whole{std::move(bytes)};
   NamedCsv table{file,
                  is_json ? analysis::read_json_rows(whole, file) : analysis::read_csv(whole, file)};
-  analysis::drop_further_headers(table.text);
+  analysis::settle_header(table.text, file);
   check_says_whose(table);
   return table;
 }
@@ -80,6 +80,7 @@ analysis::AnswerReading reading_of(const TableOptions& options) {
   reading.merges_alike = options.merges_alike;
   reading.pools_runs = options.pools_runs;
   reading.counts_practice = options.counts_practice;
+  reading.are_counts = options.are_counts;
   for (const std::string& response : options.responses) {
     reading.responses.insert(split(response));
   }
@@ -143,6 +144,12 @@ Summary summary_of_answers(const std::vector<NamedCsv>& tables, const TableOptio
                     table.weight_column, table.rows, table.answers.size()));
   }
   std::ranges::copy(table.merged, std::back_inserter(summary.deviations));
+  for (const std::string& column : table.not_compared) {
+    summary.deviations.push_back(
+        fmt::format("column '{}' is not compared with the names of stimuli and answers: it does "
+                    "not say of each answer whether it is right",
+                    column));
+  }
   if (!table.pooled.empty()) {
     summary.deviations.push_back(
         fmt::format("several runs are pooled of participants {}", fmt::join(table.pooled, ", ")));
@@ -179,8 +186,8 @@ Summary summary_of_matrix(NamedCsv table, const TableOptions& options, const std
   if (options.rows) {
     table.text = analysis::as_matrix(std::move(table.text), *options.rows);
   }
-  return analysis::summarise(analysis::read_counts(table.text, table.file), title,
-                             protocols::identification().name(), modes);
+  return analysis::summarise(analysis::read_counts(table.text, table.file, options.are_counts),
+                             title, protocols::identification().name(), modes);
 }
 }  // namespace
 

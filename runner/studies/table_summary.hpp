@@ -17,6 +17,7 @@ struct TableOptions {
   bool merges_alike{false};
   bool pools_runs{false};
   bool counts_practice{false};
+  bool are_counts{false};                      // also what looks like percentages or sums
   std::optional<analysis::MatrixRows> rows{};  // of a matrix whose corner does not say it
 };
 

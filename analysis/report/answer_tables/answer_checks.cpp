@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <set>
 #include <string_view>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -84,8 +82,8 @@ std::string described(const Runs& runs) {
 }  // namespace
 
 std::optional<bool> right_or_wrong(const std::string& cell) {
-  constexpr std::array right{"1", "1.0", "true", "yes", "right", "correct"};
-  constexpr std::array wrong{"0", "0.0", "false", "no", "wrong", "incorrect"};
+  constexpr std::array right{"1", "1.0", "true", "t", "yes", "y", "right", "correct", "hit"};
+  constexpr std::array wrong{"0", "0.0", "false", "f", "no", "n", "wrong", "incorrect", "miss"};
   const auto is_one_of = [&](const auto& words) {
     return std::ranges::any_of(words, [&](const char* word) { return is_same_word(cell, word); });
   };
@@ -113,7 +111,7 @@ bool says_practice(const std::string& column, const std::string& cell) {
 }
 
 std::string to_text(const AnswerOrigin& origin) {
-  return origin.csv->text.place(origin.csv->file, origin.line);
+  return origin.csv->text.place(origin.csv->file, origin.row->line);
 }
 
 std::vector<std::string> merge_alike(std::vector<AnswerRow>& answers,
@@ -189,27 +187,4 @@ std::vector<std::string> several_runs(const std::vector<AnswerRow>& answers,
   return found;
 }
 
-void apply_weights(std::vector<AnswerRow>& answers, AnswerOrigins& origins) {
-  constexpr std::int64_t max_answers = 1'000'000;
-  std::vector<AnswerRow> all;
-  AnswerOrigins their_origins;
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    if (std::ssize(all) + origins[i].weight > max_answers) {
-      throw core::InvalidInput{
-          fmt::format("{}: there are more than {} answers", to_text(origins[i]), max_answers)};
-    }
-    const auto times = static_cast<std::size_t>(origins[i].weight);
-    all.insert(all.end(), times, answers[i]);
-    their_origins.insert(their_origins.end(), times, origins[i]);
-  }
-  answers = std::move(all);
-  origins = std::move(their_origins);
-}
-
-bool is_counted_already(const std::vector<AnswerRow>& answers) {
-  std::set<std::tuple<std::string_view, std::string_view, std::string_view>> kinds;
-  return std::ranges::all_of(answers, [&](const AnswerRow& answer) {
-    return kinds.emplace(answer.participant_id, answer.stimulus, answer.response).second;
-  });
-}
 }  // namespace tapstudy::analysis

@@ -10,7 +10,7 @@ namespace tapstudy::analysis {
 // What a row says beside its answer.
 struct AnswerOrigin {
   const NamedCsv* csv{};
-  int line{};
+  const CsvRow* row{};
   std::optional<bool> is_said_right{};  // by the file itself
   std::string run{};                    // "date '2026-11-02', session '1'"; may be empty
   std::int64_t weight{1};               // how many answers it stands for
@@ -39,11 +39,4 @@ void check_right_answers(const std::vector<results::AnswerRow>& answers,
 // two answers each at least. Throws InvalidInput naming the runs, unless they are to be pooled.
 std::vector<std::string> several_runs(const std::vector<results::AnswerRow>& answers,
                                       const AnswerOrigins& origins, bool pools_runs);
-
-// Each answer as often as its row says. Throws InvalidInput beyond a million answers.
-void apply_weights(std::vector<results::AnswerRow>& answers, AnswerOrigins& origins);
-
-// Whether each kind of answer (participant, stimulus, response) has one row, as a table that was
-// counted has.
-bool is_counted_already(const std::vector<results::AnswerRow>& answers);
 }  // namespace tapstudy::analysis

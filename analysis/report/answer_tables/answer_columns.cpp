@@ -17,6 +17,11 @@ bool is_same_word(std::string_view one, std::string_view other) {
 }
 
 namespace {
+std::string in_small_letters(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
 using Header = std::vector<std::string>;
 using Names = std::vector<std::string_view>;
 
@@ -33,6 +38,12 @@ struct AnswerFormat {
   std::vector<RowCondition> counted{};  // of the columns that there are
   std::string_view block{};
 };
+
+Names usual_participants() {
+  return {
+      "participant_id", "participant", "participantid", "subject_id",   "subject",
+      "subjectid",      "subject_nr",  "ppid",          "prolific_pid", "participant private id"};
+}
 
 const std::vector<AnswerFormat>& formats() {
   static const std::vector<AnswerFormat> table{
@@ -63,7 +74,7 @@ const std::vector<AnswerFormat>& formats() {
       {{"trial_type", "trial_index", "time_elapsed"},
        {"stimulus"},
        {"response"},
-       {"participant_id", "participant", "subject_id", "subject"},
+       usual_participants(),
        {"rt"},
        1e-3,
        {"correct"},
@@ -71,10 +82,10 @@ const std::vector<AnswerFormat>& formats() {
       {{},
        {"stimulus"},
        {"response"},
-       {"participant_id", "participant", "subject_id", "subject", "subject_nr", "ppid"},
+       usual_participants(),
        {"response_time_s"},
        1.0,
-       {"correct", "is_correct", "accuracy", "acc", "corr"},
+       {"correct", "is_correct", "iscorrect", "accuracy", "acc", "corr"},
        {"date", "session", "session_id", "run", "run_id", run_of_file}}};
   return table;
 }
@@ -119,18 +130,29 @@ struct Wanted {
   std::string_view option;
   std::string chosen;
   Names usual;
+  bool may_be_none{false};  // by the option's value `no_column`
 };
 
+// A column is there once, whatever is not asked for by its name.
 std::optional<std::size_t> find(const Header& header, const Wanted& wanted,
                                 const std::string& where) {
+  if (wanted.may_be_none && wanted.chosen == no_column) {
+    return std::nullopt;
+  }
   if (!wanted.chosen.empty()) {
     return place_of_named(header, wanted.chosen, where);
   }
+  const std::string otherwise =
+      wanted.may_be_none ? fmt::format(" ({} {}: none)", wanted.option, no_column) : "";
   for (const std::string_view pattern : wanted.usual) {
     const std::vector<std::string> found = columns_like(header, pattern);
+    if (found.size() > 1 && found.front() == found.back()) {
+      refuse(where, fmt::format("has {} columns '{}': rename all but one{}", found.size(),
+                                found.front(), otherwise));
+    }
     if (found.size() > 1) {
-      refuse(where, fmt::format("{} could be meant: name one of them by {}", fmt::join(found, ", "),
-                                wanted.option));
+      refuse(where, fmt::format("{} could be meant: name one of them by {}{}",
+                                fmt::join(found, ", "), wanted.option, otherwise));
     }
     if (!found.empty()) {
       return place_of_named(header, found.front(), where);
@@ -160,46 +182,83 @@ double unit_in(std::string_view name, double otherwise) {
 }  // namespace
 
 bool is_share(const std::string& name) {
-  static constexpr std::array known{"percent",    "percentage", "pct",   "%",          "share",
-                                    "proportion", "prop",       "p.hat", "probability"};
+  static constexpr std::array known{"percent",  "percentage", "pct",        "perc",
+                                    "%",        "share",      "proportion", "proportions",
+                                    "prop",     "p.hat",      "fraction",   "frac",
+                                    "rel_freq", "rel.freq",   "rate",       "probability"};
   return std::ranges::any_of(known, [&](const char* word) { return is_same_word(name, word); });
+}
+
+bool may_be_counts(const std::string& name) {
+  static constexpr std::array whole{"", "0", "size", "num", "number", "times", "total", "cases"};
+  static constexpr std::array parts{"count", "freq", "anzahl", "weight"};
+  const std::string small = in_small_letters(name);
+  const auto is_small = [&](const char* word) { return small == word; };
+  const auto is_within = [&](const char* word) { return small.find(word) != std::string::npos; };
+  return std::ranges::any_of(whole, is_small) || std::ranges::any_of(parts, is_within) ||
+         small.starts_with("n_") || small.ends_with("_n");
+}
+
+std::string described_column(const std::vector<std::string>& header, std::size_t place) {
+  return header[place].empty() ? fmt::format("column {}, which has no name,", place + 1)
+                               : fmt::format("column '{}'", header[place]);
 }
 
 namespace {
 constexpr std::array weights{"n", "freq", "frequency", "count", "counts", "weight", "weights"};
 
-// The column of that option; a column of a usual name that is there twice is none.
-std::optional<std::size_t> optional_column(const Header& header, const std::string& chosen,
-                                           const Names& usual, const std::string& where) {
-  if (!chosen.empty()) {
-    return chosen == no_column ? std::nullopt
-                               : std::optional{place_of_named(header, chosen, where)};
+// What is noted beside answers under the name of what was asked: key_resp.corr beside
+// key_resp.keys, Plate.ACC beside Plate.RESP.
+std::vector<std::string> names_beside(const std::string& answered) {
+  const std::size_t end = answered.find_last_of("._");
+  if (end == std::string::npos || end == 0) {
+    return {};
   }
-  for (const std::string_view name : usual) {
-    const std::vector<std::string> found = columns_like(header, name);
-    if (found.size() == 1) {
-      return place_of_named(header, found.front(), where);
-    }
+  std::vector<std::string> names;
+  for (const char* const suffix : {"corr", "acc", "correct"}) {
+    names.push_back(answered.substr(0, end + 1) + suffix);
   }
-  return std::nullopt;
+  return names;
 }
 
 void find_what_rows_say(const Header& header, const AnswerColumns& chosen,
                         const AnswerFormat& format, const std::string& where,
                         AnswerPlaces& places) {
   if (!places.is_own_export || !chosen.weight.empty()) {
-    places.weight = optional_column(header, chosen.weight, {weights.begin(), weights.end()}, where);
+    places.weight =
+        find(header, {"--weights", chosen.weight, {weights.begin(), weights.end()}, true}, where);
   }
-  const std::string& answered = header[places.response];
-  const std::string beside = answered.substr(0, answered.rfind('.')) + ".corr";
-  Names correct = format.correct;
-  if (answered.ends_with(".keys")) {
-    correct = {beside};
+  const std::vector<std::string> beside = names_beside(header[places.response]);
+  Names correct{beside.begin(), beside.end()};
+  if (!header[places.response].ends_with(".keys")) {  // else others are of other questions
+    correct.insert(correct.end(), format.correct.begin(), format.correct.end());
   }
-  places.correct = optional_column(header, chosen.correct, correct, where);
+  places.correct = find(header, {"--correct-column", chosen.correct, correct, true}, where);
   for (const std::string_view name : format.runs) {
-    if (const auto place = optional_column(header, "", {name}, where)) {
-      places.runs.push_back(*place);
+    if (const std::vector<std::string> found = columns_like(header, name); found.size() == 1) {
+      places.runs.push_back(place_of_named(header, found.front(), where));
+    }
+  }
+}
+
+// Otherwise people who differ would be taken for one.
+void check_may_not_tell_people(const Header& header, const AnswerPlaces& places,
+                               const std::string& where) {
+  constexpr std::array<std::string_view, 6> words{"participant", "subject",  "proband",
+                                                  "respondent",  "prolific", "worker"};
+  constexpr std::array<std::string_view, 5> names{"vp", "vpn", "pid", "responseid", "observer"};
+  for (std::size_t place = 0; place < header.size(); ++place) {
+    const std::string small = in_small_letters(header[place]);
+    const auto is_within = [&](std::string_view word) {
+      return small.find(word) != std::string::npos;
+    };
+    const bool may_tell =
+        std::ranges::any_of(words, is_within) || std::ranges::find(names, small) != names.end();
+    if (may_tell && place != places.stimulus && place != places.response) {
+      refuse(where, fmt::format("column '{0}' may say whose answers these are: "
+                                "--participant-column '{0}', or --participant-column {1} if "
+                                "nothing does",
+                                header[place], no_column));
     }
   }
 }
@@ -212,7 +271,10 @@ AnswerPlaces find_columns(const Header& header, const AnswerColumns& chosen,
   places.stimulus = need(header, {"--stimulus-column", chosen.stimulus, format.stimulus}, where);
   places.response = need(header, {"--response-column", chosen.response, format.response}, where);
   places.participant =
-      find(header, {"--participant-column", chosen.participant, format.participant}, where);
+      find(header, {"--participant-column", chosen.participant, format.participant, true}, where);
+  if (!places.participant && chosen.participant.empty()) {
+    check_may_not_tell_people(header, places, where);
+  }
   places.mode = find(header, {"", "", {"mode"}}, where);
   // times of another column than the answers' would be another question's
   Names times = format.time;

@@ -9,7 +9,7 @@ namespace tapstudy::analysis {
 struct AnswerColumns {
   std::string stimulus{};
   std::string response{};
-  std::string participant{};
+  std::string participant{};  // `no_column`: not known
   std::string time{};
   double time_unit_s{};   // 0: the format's
   std::string weight{};   // how many answers a row stands for; `no_column`: one
@@ -59,11 +59,17 @@ struct AnswerPlaces {
 
 // Whether a column of that name holds shares, which are no counts.
 bool is_share(const std::string& name);
+// Whether a column of that name may hold counts: "count_nonzero", "Anzahl", "0" and no name at all,
+// as pandas calls sizes of groups.
+bool may_be_counts(const std::string& name);
+// "column 'n'", or by its place where it has no name.
+std::string described_column(const std::vector<std::string>& header, std::size_t place);
 
 // Formats are told apart by columns that no other has: tapstudy's own exports, PsychoPy's wide CSV
 // (answers are keys of the one keyboard component), jsPsych's CSV (times in milliseconds), and any
 // table with columns `stimulus` and `response`. Throws InvalidInput with `where` if a column that
-// is named is missing or there twice, or if several could hold the answers.
+// is named is missing or there twice, if several could hold the answers, and if participants are
+// not known but a column's name says that it may tell them.
 AnswerPlaces find_columns(const std::vector<std::string>& header, const AnswerColumns& chosen,
                           const std::string& where);
 // Whatever the case of their letters.

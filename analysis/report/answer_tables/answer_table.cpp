@@ -18,6 +18,7 @@
 
 #include "analysis/report/answer_tables/answer_checks.hpp"
 #include "analysis/report/answer_tables/answer_columns.hpp"
+#include "analysis/report/answer_tables/answer_weights.hpp"
 #include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/answer_tables/foreign_text.hpp"
 #include "core/error.hpp"
@@ -82,24 +83,21 @@ class AnswerReader {
   AnswerReader(const NamedCsv& csv, const AnswerReading& reading)
       : csv_{csv},
         reading_{reading},
-        places_{
-            find_columns(header(), reading.columns, to_text({&csv, csv.text.rows.front().line}))} {
+        places_{find_columns(header(), reading.columns, to_text({&csv, &csv.text.rows.front()}))} {
     for (const RowCondition& condition : reading.conditions) {
       const auto found = std::ranges::find(header(), condition.column);
-      if (found == header().end()) {
-        refuse(csv.text.rows.front().line,
-               fmt::format("has no column '{}', which --where names", condition.column));
+      if (std::ranges::count(header(), condition.column) != 1) {
+        refuse(csv.text.rows.front(),
+               fmt::format("has {} '{}', which --where names",
+                           found == header().end() ? "no column" : "several columns",
+                           condition.column));
       }
       conditions_.push_back({static_cast<std::size_t>(found - header().begin()), condition.value,
                              condition.is_excluded});
     }
     // others hold something else: a share of right answers, the right answer itself
-    if (places_.correct &&
-        !std::ranges::all_of(std::span{csv.text.rows}.subspan(1), [&](const CsvRow& row) {
-          const std::string& cell =
-              row.cells.size() == header().size() ? row.cells[*places_.correct] : "";
-          return is_missing(cell) || right_or_wrong(cell);
-        })) {
+    if (places_.correct && !says_what_is_right(*places_.correct)) {
+      not_compared_ = places_.correct;
       places_.correct.reset();
     }
   }
@@ -109,7 +107,7 @@ class AnswerReader {
   void add_to(AnswerTable& table, std::vector<Origin>& origins) const {
     for (const CsvRow& row : std::span{csv_.text.rows}.subspan(1)) {
       if (row.cells.size() != header().size()) {
-        refuse(row.line,
+        refuse(row,
                fmt::format("has {} cells, the header has {}", row.cells.size(), header().size()));
       }
       if (meets(conditions_, row)) {
@@ -119,14 +117,24 @@ class AnswerReader {
     if (!reading_.counts_practice && !places_.is_own_export) {
       check_holds_no_practice();
     }
+    if (not_compared_) {
+      table.not_compared.insert(header()[*not_compared_]);
+    }
     table.possible_time = places_.possible_time;
     table.has_times |= places_.time.has_value();
   }
-  // The column whose name says that it tells how many answers a row stands for; empty: none.
-  std::string weight_column() const { return places_.weight ? header()[*places_.weight] : ""; }
-  std::string share_column() const {
-    const auto found = std::ranges::find_if(header(), is_share);
-    return found == header().end() ? "" : *found;
+  OtherColumns other_columns() const {
+    OtherColumns other{header(), {}, places_.weight ? header()[*places_.weight] : ""};
+    std::set<std::optional<std::size_t>> known{places_.stimulus,    places_.response,
+                                               places_.participant, places_.time,
+                                               places_.mode,        places_.block};
+    known.insert(places_.runs.begin(), places_.runs.end());
+    for (std::size_t place = 0; place < header().size() && !places_.is_own_export; ++place) {
+      if (!known.contains(place) && place != places_.correct) {
+        other.places.push_back(place);
+      }
+    }
+    return other;
   }
 
  private:
@@ -134,6 +142,12 @@ class AnswerReader {
   static bool meets(const Conditions& conditions, const CsvRow& row) {
     return std::ranges::all_of(conditions, [&](const PlacedCondition& condition) {
       return (row.cells[condition.place] == condition.value) != condition.is_excluded;
+    });
+  }
+  bool says_what_is_right(std::size_t place) const {
+    return std::ranges::all_of(std::span{csv_.text.rows}.subspan(1), [&](const CsvRow& row) {
+      const std::string& cell = row.cells.size() == header().size() ? row.cells[place] : "";
+      return is_missing(cell) || right_or_wrong(cell);
     });
   }
   std::vector<const CsvRow*> chosen_rows() const {
@@ -164,7 +178,7 @@ class AnswerReader {
     const auto practice = std::ranges::count_if(rows, is_practice);
     if (practice > 0 && practice < std::ssize(rows)) {
       const CsvRow& first = **std::ranges::find_if(rows, is_practice);
-      refuse(first.line,
+      refuse(first,
              fmt::format("column '{0}' says '{1}': {2} of {3} rows are practice. Leave them out "
                          "(--where '{0}!={1}', or '{0}=' and the value to be counted), or "
                          "--count-practice",
@@ -180,7 +194,7 @@ class AnswerReader {
     } else {
       table.answers.push_back(answer_of(row));
       origins.push_back(
-          {&csv_, row.line,
+          {&csv_, &row,
            places_.correct ? right_or_wrong(row.cells[*places_.correct]) : std::nullopt,
            run_of(row), places_.weight ? weight_of(row) : 1});
     }
@@ -198,17 +212,17 @@ class AnswerReader {
   std::int64_t weight_of(const CsvRow& row) const {
     constexpr std::int64_t max_weight = 1'000'000;
     const std::string& cell = row.cells[*places_.weight];
-    const auto weight = core::number_in<std::int64_t>(cell);
-    if (!weight || *weight < 0 || *weight > max_weight) {
-      refuse(row.line, fmt::format("'{}' in column '{}' is not a count of answers (from 0 to {}; "
-                                   "shares are no counts; --weights none: each row is one answer)",
-                                   cell, weight_column(), max_weight));
+    const auto weight = count_in_cell(csv_.text, cell);
+    if (!weight || *weight > max_weight) {
+      refuse(row, fmt::format("'{}' in column '{}' is not a count of answers (from 0 to {}; "
+                              "shares are no counts; --weights none: each row is one answer)",
+                              cell, header()[*places_.weight], max_weight));
     }
     return *weight;
   }
   const std::vector<std::string>& header() const { return csv_.text.rows.front().cells; }
-  [[noreturn]] void refuse(int line, const std::string& what) const {
-    throw core::InvalidInput{fmt::format("{}: {}", to_text({&csv_, line}), what)};
+  [[noreturn]] void refuse(const CsvRow& row, const std::string& what) const {
+    throw core::InvalidInput{fmt::format("{}: {}", to_text({&csv_, &row}), what)};
   }
 
   results::AnswerRow answer_of(const CsvRow& row) const {
@@ -218,10 +232,15 @@ class AnswerReader {
                                                 : std::filesystem::path{csv_.file}.stem().string();
     answer.stimulus = row.cells[places_.stimulus];
     const std::string cell = only_answer_in(row.cells[places_.response]);
-    if (is_missing(answer.stimulus) || is_missing(answer.participant_id)) {
-      refuse(row.line,
-             fmt::format("has an answer, '{}', but no {} (--where COLUMN=VALUE leaves rows out)",
-                         cell, is_missing(answer.stimulus) ? "stimulus" : "participant"));
+    if (is_unanswered(answer.stimulus)) {
+      refuse(row, fmt::format("has an answer, '{0}', but no stimulus (--where '{2}!={1}' leaves "
+                              "such rows out; --responses '{1}' says that it is a name)",
+                              cell, answer.stimulus, header()[places_.stimulus]));
+    }
+    if (is_missing(answer.participant_id)) {
+      refuse(row, fmt::format("has an answer, '{}', but no participant (--where COLUMN!=VALUE "
+                              "leaves rows out; --participant-column none: they are not known)",
+                              cell));
     }
     answer.block = places_.block ? row.cells[*places_.block] : "";
     const auto meaning = reading_.responses.find(cell);
@@ -249,8 +268,8 @@ class AnswerReader {
       value = core::number_in<double>(std::string{cell}.replace(comma, 1, "."));  // in quotes
     }
     if (!value || !(*value >= 0.0 && std::isfinite(*value))) {
-      refuse(row.line, fmt::format("'{}' in column '{}' is not a time from 0", cell,
-                                   header()[*places_.time]));
+      refuse(row, fmt::format("'{}' in column '{}' is not a time from 0", cell,
+                              header()[*places_.time]));
     }
     return *value * places_.time_unit_s;
   }
@@ -259,6 +278,7 @@ class AnswerReader {
   const AnswerReading& reading_;
   AnswerPlaces places_;
   Conditions conditions_;
+  std::optional<std::size_t> not_compared_{};  // a column called after right answers
 };
 
 std::vector<Item> items_of(const std::vector<std::string>& names) {
@@ -295,10 +315,15 @@ void check_responses(const std::vector<results::AnswerRow>& answers,
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const std::string& response = answers[i].response;
     if (!known.contains(response)) {
-      throw core::InvalidInput{
-          fmt::format("{}: response '{}' is not a stimulus (if it can be answered, name it with "
-                      "--responses; if it stands for a stimulus, say --responses '{}=STIMULUS')",
-                      to_text(origins[i]), response, response)};
+      const auto like = std::ranges::find_if(
+          responses, [&](const std::string& name) { return as_read(name) == as_read(response); });
+      const std::string alike = like == responses.end() ? "" : *like;
+      throw core::InvalidInput{fmt::format(
+          "{}: response '{}' is not a stimulus (if it can be answered, name it with "
+          "--responses; if it stands for a stimulus, say --responses '{}=STIMULUS'; if "
+          "it is none, --where 'COLUMN!={}'{})",
+          to_text(origins[i]), response, response, response,
+          alike.empty() ? "" : fmt::format("; it reads like '{}': --merge-alike", alike))};
     }
   }
   if (responses.size() > max_classes) {
@@ -345,45 +370,6 @@ void check_is_one_block(const std::vector<results::AnswerRow>& answers,
 }  // namespace
 
 namespace {
-// The column that rows are weighted by; empty: each is one answer. A table that was counted has one
-// row for each kind of answer; a trial's own number may be called n, too.
-std::string weight_column(const std::string& named, const AnswerTable& table,
-                          const std::vector<Origin>& origins, const AnswerReading& reading) {
-  if (named.empty() || !reading.columns.weight.empty()) {
-    return named;
-  }
-  std::int64_t next = 0;
-  const bool only_counts_rows =
-      std::ranges::all_of(origins, [&](const Origin& origin) { return origin.weight == ++next; });
-  if (only_counts_rows || !is_counted_already(table.answers)) {
-    throw core::InvalidInput{
-        fmt::format("{}: column '{}' may say how many answers a row stands for: --weights {}, or "
-                    "--weights none if each row is one answer",
-                    to_text(origins.front()), named, named)};
-  }
-  return named;
-}
-
-void check_are_no_shares(const std::string& column, const AnswerTable& table,
-                         const std::vector<Origin>& origins) {
-  if (!column.empty() && table.answers.size() > 1 && is_counted_already(table.answers)) {
-    throw core::InvalidInput{fmt::format(
-        "{}: column '{}' holds shares, which are no counts: a table of answers needs how often "
-        "each was given (--weights names that column; --weights none: each row is one answer)",
-        to_text(origins.front()), column)};
-  }
-}
-
-void weigh(const std::string& column, AnswerTable& table, std::vector<Origin>& origins) {
-  table.weight_column = column;
-  table.has_times = false;  // of several answers there is at most a mean
-  table.possible_time.clear();
-  for (results::AnswerRow& answer : table.answers) {
-    answer.response_time_s = std::numeric_limits<double>::quiet_NaN();
-  }
-  apply_weights(table.answers, origins);
-}
-
 // Each once, as they first appear.
 std::vector<std::string> by_appearance(const std::vector<results::AnswerRow>& answers,
                                        std::string results::AnswerRow::*column,
@@ -429,8 +415,7 @@ void check_order_names(const std::vector<std::string>& order,
 // Rows of all files, of one mode and one block.
 struct ReadRows {
   std::vector<Origin> origins;
-  std::string weight_column;
-  std::string share_column;
+  OtherColumns columns;  // of the last file
 };
 ReadRows read_rows(const std::vector<NamedCsv>& files, const AnswerReading& reading,
                    AnswerTable& table) {
@@ -446,10 +431,10 @@ ReadRows read_rows(const std::vector<NamedCsv>& files, const AnswerReading& read
       throw core::InvalidInput{fmt::format("{}: is empty", csv.file)};
     }
     const AnswerReader reader{csv, reading};
-    table.are_participants_known |= reader.names_participants();
+    table.are_participants_known = reader.names_participants() ||
+                                   (files.size() > 1 && reading.columns.participant != no_column);
     reader.add_to(table, read.origins);
-    read.weight_column = reader.weight_column();
-    read.share_column = reader.share_column();
+    read.columns = reader.other_columns();
   }
   if (table.answers.empty()) {
     throw core::InvalidInput{fmt::format("{}: holds no answers", files.front().file)};
@@ -458,24 +443,10 @@ ReadRows read_rows(const std::vector<NamedCsv>& files, const AnswerReading& read
   check_is_one_block(table.answers, read.origins);
   return read;
 }
-
-// What rows stand for, and whose they are.
-void weigh_rows(ReadRows& read, const AnswerReading& reading, AnswerTable& table) {
-  if (const std::string column = weight_column(read.weight_column, table, read.origins, reading);
-      !column.empty()) {
-    weigh(column, table, read.origins);
-  } else if (reading.columns.weight.empty()) {
-    check_are_no_shares(read.share_column, table, read.origins);
-  }
-  if (table.answers.empty()) {
-    throw core::InvalidInput{"the weights of all answers are 0"};
-  }
-}
 }  // namespace
 
 AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading) {
   AnswerTable table;
-  table.are_participants_known = files.size() > 1;
   ReadRows read = read_rows(files, reading, table);
   std::map<std::string, std::string> meanings = reading.responses;
   if (reading.merges_alike) {
@@ -492,7 +463,7 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   if (table.are_participants_known) {
     table.pooled = several_runs(table.answers, read.origins, reading.pools_runs);
   }
-  weigh_rows(read, reading, table);
+  weigh_answers(read.columns, reading, table, read.origins);
   check_order_names(reading.order, responses);
   std::vector<std::string> in_appearance =
       by_appearance(table.answers, &results::AnswerRow::stimulus);
@@ -513,15 +484,5 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   }
   count_on(table.answers);
   return table;
-}
-
-void drop_further_headers(CsvText& table) {
-  constexpr std::size_t import_row = 2;
-  if (table.rows.size() > import_row &&
-      std::ranges::all_of(table.rows[import_row].cells, [](const std::string& cell) {
-        return cell.starts_with("{\"ImportId\"");
-      })) {
-    table.rows.erase(table.rows.begin() + 1, table.rows.begin() + 1 + import_row);
-  }
 }
 }  // namespace tapstudy::analysis

@@ -28,6 +28,7 @@ struct AnswerReading {
   bool merges_alike{false};          // names that read alike are one, the first of them
   bool pools_runs{false};            // of one participant
   bool counts_practice{false};       // rows that a column calls practice are answers like others
+  bool are_counts{false};            // also what looks like percentages, or like sums of others
   std::vector<std::string> order{};  // of stimuli and responses; empty: as they first appear
 };
 
@@ -48,6 +49,8 @@ struct AnswerTable {
   // Rows of other modes than the one reported: real before pilot before simulated.
   std::size_t of_other_modes{};
   bool has_times{};
+  // Columns that are called after right answers, but do not say of each whether it is.
+  std::set<std::string> not_compared{};
   std::string possible_time{};  // a column that was not read, but may hold times; empty: none
 };
 
@@ -59,12 +62,13 @@ struct NamedCsv {
 // where a column says that some rows are practice (says_practice()), for an answer that is neither
 // a stimulus nor one of `responses`, a time that is no number from 0, an answer without a stimulus,
 // several blocks of one of tapstudy's own exports, a row with more or fewer cells than the header,
-// more than 200 different answers, or no answers at all.
+// more than 200 different answers, no answers at all, and as weigh_answers().
 AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading& reading);
 
 // Without the two rows below the header in which Qualtrics repeats the questions and says where
-// they come from.
-void drop_further_headers(CsvText& table);
+// they come from; with a header above the names of rows, which R's write.table leaves out. Throws
+// InvalidInput where a title stands in the header's place.
+void settle_header(CsvText& table, const std::string& file);
 
 // Whether the text begins as a list does in JSON. Reads nothing else of it.
 bool is_json_list(std::string_view text);

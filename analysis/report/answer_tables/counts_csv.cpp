@@ -57,11 +57,16 @@ const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const s
   return rows;
 }
 
-std::int64_t count_in(const std::string& cell, const std::string& file, int line) {
-  const auto value = core::number_in<std::int64_t>(cell);
-  if (!value || *value < 0 || *value > max_answers) {
+std::int64_t count_in(const std::string& cell, const CsvText& csv, const std::string& file,
+                      int line) {
+  if (cell.empty()) {
+    refuse(file, line, "has an empty cell: an answer that was never given is counted as 0");
+  }
+  const auto value = count_in_cell(csv, cell);
+  if (!value || *value > max_answers) {
     refuse(file, line,
-           fmt::format("'{}' is not a count (from 0 to {}; a factor's column is headed {}NAME)",
+           fmt::format("'{}' is not a count (from 0 to {}; shares are no counts; a factor's column "
+                       "is headed {}NAME)",
                        cell, max_answers, factor_mark));
   }
   return *value;
@@ -140,6 +145,22 @@ bool is_margin(const std::vector<std::vector<std::int64_t>>& lines, std::size_t 
   return whole > 0 && lines.front().size() > 2;
 }
 
+constexpr const char* otherwise = " (--are-counts: it is no sum)";
+
+// Of 100 answers to each stimulus only --are-counts can tell.
+void check_are_no_percentages(const ConfusionMatrix& matrix, const std::vector<CsvRow>& lines,
+                              const std::string& file) {
+  constexpr std::int64_t rounding = 1;
+  const auto adds_up = [](const std::vector<std::int64_t>& row) {
+    return std::abs(std::accumulate(row.begin(), row.end(), std::int64_t{0}) - 100) <= rounding;
+  };
+  if (std::ranges::all_of(matrix.counts, adds_up)) {
+    refuse(file, lines.front().line,
+           "each row adds up to 100, as percentages do, which are no counts (--are-counts: each "
+           "stimulus was presented so often)");
+  }
+}
+
 // They would count every answer twice.
 void check_has_no_margins(const ConfusionMatrix& matrix, const std::vector<CsvRow>& lines,
                           const std::string& file) {
@@ -153,20 +174,21 @@ void check_has_no_margins(const ConfusionMatrix& matrix, const std::vector<CsvRo
   for (std::size_t j = 0; j < columns.size(); ++j) {
     if (is_margin(matrix.counts, j)) {
       refuse(file, lines.front().line,
-             fmt::format("column '{}' is the sum of the others: leave it out",
-                         matrix.responses[j].name));
+             fmt::format("column '{}' is the sum of the others: leave it out{}",
+                         matrix.responses[j].name, otherwise));
     }
   }
   for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
     if (is_margin(columns, i)) {
-      refuse(
-          file, lines[i + 1].line,
-          fmt::format("row '{}' is the sum of the others: leave it out", matrix.stimuli[i].name));
+      refuse(file, lines[i + 1].line,
+             fmt::format("row '{}' is the sum of the others: leave it out{}",
+                         matrix.stimuli[i].name, otherwise));
     }
   }
 }
 
-ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string& file) {
+ConfusionMatrix from_matrix(const CsvText& csv, const std::vector<CsvRow>& lines,
+                            const std::string& file) {
   const std::vector<std::string>& header = lines.front().cells;
   if (std::max(lines.size(), header.size()) > max_classes) {
     refuse(file, lines.front().line,
@@ -181,20 +203,23 @@ ConfusionMatrix from_matrix(const std::vector<CsvRow>& lines, const std::string&
     }
   }
   ConfusionMatrix matrix{stimuli, responses_of(lines.front(), first, stimuli, file)};
-  check_is_named(stimuli, matrix.responses, lines, file);
   for (const CsvRow& line : std::span{lines}.subspan(1)) {
     for (std::size_t column = first; column < header.size(); ++column) {
-      matrix.add(line.cells[0], header[column], count_in(line.cells[column], file, line.line));
+      matrix.add(line.cells[0], header[column], count_in(line.cells[column], csv, file, line.line));
     }
   }
-  check_has_no_margins(matrix, lines, file);
   return matrix;
 }
 }  // namespace
 
-ConfusionMatrix read_counts(const CsvText& csv, const std::string& file) {
+ConfusionMatrix read_counts(const CsvText& csv, const std::string& file, bool are_counts) {
   const std::vector<CsvRow>& lines = checked_rows(csv.rows, file);
-  ConfusionMatrix matrix = from_matrix(lines, file);
+  ConfusionMatrix matrix = from_matrix(csv, lines, file);
+  if (!are_counts) {
+    check_has_no_margins(matrix, lines, file);
+    check_are_no_percentages(matrix, lines, file);
+  }
+  check_is_named(matrix.stimuli, matrix.responses, lines, file);
   if (matrix.total() == 0) {
     refuse(file, lines.front().line, "holds no answers");
   }

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 #include <glib.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <memory>
+#include <regex>
 #include <string_view>
 
 #include "core/error.hpp"
@@ -70,6 +69,45 @@ std::string utf8_of(const std::string& bytes, const std::string& encoding,
   return without_separator_line({text.get(), size});
 }
 
+namespace {
+// The same for readers: dashes and apostrophes of all kinds, characters that take no place.
+void plain_characters(std::string& text) {
+  const auto replace_all = [&](std::string_view one, std::string_view other) {
+    for (auto at = text.find(one); at != std::string::npos; at = text.find(one, at)) {
+      text.replace(at, one.size(), other);
+    }
+  };
+  for (const char* const dash : {"\u2010", "\u2011", "\u2012", "\u2013", "\u2014", "\u2212"}) {
+    replace_all(dash, "-");
+  }
+  for (const char* const apostrophe : {"\u2018", "\u2019", "\u02bc"}) {
+    replace_all(apostrophe, "'");
+  }
+  for (const char* const nothing : {"\u00ad", "\u200b", "\u200c", "\u200d", "\ufeff"}) {
+    replace_all(nothing, "");
+  }
+}
+
+std::string with_single_spaces(std::string_view text) {
+  std::string read;
+  for (const char c : text) {
+    const bool is_space = c == ' ' || c == '\t';
+    if (!is_space || (!read.empty() && read.back() != ' ')) {
+      read += is_space ? ' ' : c;
+    }
+  }
+  read.erase(read.find_last_not_of(' ') + 1);
+  return read;
+}
+
+// "P01" and "P1", "2.0" and "2"; not of decimals (1.05).
+std::string without_idle_zeros(const std::string& text) {
+  static const std::regex leading{"(^|[^0-9.])0+(?=[0-9])"};
+  static const std::regex decimals{"^([0-9]+)\\.0+$"};
+  return std::regex_replace(std::regex_replace(text, leading, "$1"), decimals, "$1");
+}
+}  // namespace
+
 std::string as_read(const std::string& name) {
   const Text normal{g_utf8_normalize(name.data(), size_of(name), G_NORMALIZE_ALL_COMPOSE)};
   if (!normal) {
@@ -77,18 +115,8 @@ std::string as_read(const std::string& name) {
   }
   const Text folded{g_utf8_casefold(normal.get(), -1)};
   const Text composed{g_utf8_normalize(folded.get(), -1, G_NORMALIZE_ALL_COMPOSE)};
-  std::string read;
-  for (const char c : std::string_view{composed.get()}) {
-    const bool is_space = c == ' ' || c == '\t';
-    if (!is_space || (!read.empty() && read.back() != ' ')) {
-      read += is_space ? ' ' : c;
-    }
-  }
-  read.erase(read.find_last_not_of(' ') + 1);
-  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
-  if (!read.empty() && std::ranges::all_of(read, is_digit)) {
-    read.erase(0, std::min(read.find_first_not_of('0'), read.size() - 1));
-  }
-  return read;
+  std::string read{composed.get()};
+  plain_characters(read);
+  return without_idle_zeros(with_single_spaces(read));
 }
 }  // namespace tapstudy::analysis

@@ -242,8 +242,24 @@ TEST_CASE("sums beside or below a matrix are refused, for they would count every
              Contains("counts.csv:1: column 'total' is the sum of the others"));
   CHECK_THAT(refusal("stimulus,a,b,Sum\na,3,1,0\nb,2,5,0\nSum,5,6,0\n"),
              Contains("counts.csv:4: row 'Sum' is the sum of the others"));
+  CHECK_THAT(
+      refusal("stimulus,a,b\na,3,1\nb,2,5\nTotal,5,6\n"),
+      Contains("counts.csv:4: row 'Total' is the sum of the others") && Contains("--are-counts"));
   CHECK(refusal("stimulus,a,b\na,3,3\nb,2,2\n") == "accepted");
   CHECK(refusal("stimulus,a,b,none\na,0,0,0\nb,2,1,3\n") != "accepted");
+}
+
+TEST_CASE("a matrix of percentages is refused, unless they are said to be counts",
+          "[analysis][confusion]") {
+  const std::string text = "stimulus,a,b,c\na,85,10,5\nb,33,33,33\nc,0,0,100\n";
+  CHECK_THAT(refusal(text), Contains("counts.csv:1: each row adds up to 100, as percentages do") &&
+                                Contains("--are-counts"));
+  std::istringstream stream{text};
+  CHECK(read_counts(read_csv(stream, "counts.csv"), "counts.csv", true).total() == 299);
+  CHECK_THAT(refusal("stimulus,a,b\na,0.85,0.15\nb,0.5,0.5\n"), Contains("shares are no counts"));
+  CHECK_THAT(refusal("stimulus,a,b\na,8,\nb,4,5\n"), Contains("counts.csv:2: has an empty cell"));
+  CHECK(refusal("stimulus,a,b\na,85,15\nb,40,50\n") == "accepted");
+  CHECK(refusal("stimulus,a,b\na,8.0,1.0\nb,4.0,5.0\n") == "accepted");
 }
 
 TEST_CASE("reports of an empty row or an unanswered block say so", "[analysis][report]") {

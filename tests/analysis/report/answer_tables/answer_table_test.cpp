@@ -386,7 +386,7 @@ TEST_CASE("rows below the header that say where questions come from are no answe
       "participant,stimulus,response\nWho,Shown,Said\n"
       "\"{\"\"ImportId\"\":\"\"Q1\"\"}\",\"{\"\"ImportId\"\":\"\"Q2\"\"}\","
       "\"{\"\"ImportId\"\":\"\"Q3\"\"}\"\nP01,a,a\nP01,b,b\n");
-  drop_further_headers(csv.text);
+  settle_header(csv.text, csv.file);
   CHECK(read_answers({csv}, {}).answers.size() == 2);
 }
 
@@ -440,4 +440,163 @@ TEST_CASE("practice among the answers is asked about, in whatever column other p
 TEST_CASE("a stimulus or a person may be called after practice", "[analysis][answer_tables]") {
   CHECK(answers_in("participant,stimulus,response\ntraining,practice,practice\nP2,b,b\n")
             .answers.size() == 2);
+}
+
+TEST_CASE("a counted table whose counts have an unusual name is asked about, none is passed over",
+          "[analysis][answer_tables]") {
+  const std::string name = GENERATE("0", "size", "n_trials", "Anzahl", "count_nonzero", "Freq.x");
+  const std::string text = "stimulus,response," + name + "\na,a,15\na,b,3\nb,a,1\nb,b,17\n";
+  CHECK_THAT(refusal(text), Contains("answers.csv:2: column '" + name + "' may say how many") &&
+                                Contains("--weights '" + name + "', or --weights none"));
+  AnswerReading reading;
+  reading.columns.weight = name;
+  CHECK(answers_in(text, reading).answers.size() == 36);
+  reading.columns.weight = no_column;
+  CHECK(answers_in(text, reading).answers.size() == 4);
+  CHECK_THAT(refusal("stimulus,response,\na,a,15\na,b,3\nb,b,18\n"),
+             Contains("column 3, which has no name,"));
+  // rows of a table that pandas numbered, trials, and ages of people are no counts
+  CHECK(refusal(",stimulus,response,number\n0,a,a,3\n1,a,b,1\n2,b,b,2\n") == "accepted");
+  CHECK(refusal("participant,age,stimulus,response\nA,31,a,a\nA,31,b,b\nB,25,a,a\n") == "accepted");
+}
+
+TEST_CASE(
+    "shares are told by what they add up to, and a sum by what it sums, unless they are counts",
+    "[analysis][answer_tables]") {
+  const auto table_of = [](const std::string& column, const std::vector<std::string>& cells) {
+    std::string text = "stimulus,response," + column + "\n";
+    const std::vector<std::string> kinds{"a,a,", "a,b,", "b,a,", "b,b,"};
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      text += kinds[i] + cells[i] + "\n";
+    }
+    return text;
+  };
+  CHECK_THAT(refusal(table_of("said", {"0.85", "0.15", "0.1", "0.9"})),
+             Contains("'said' holds shares") && Contains("--weights"));
+  CHECK_THAT(refusal(table_of("said", {"85", "15", "10", "91"})), Contains("'said' holds shares"));
+  const std::string hundreds = table_of("n", {"85", "15", "10", "90"});
+  CHECK_THAT(refusal(hundreds),
+             Contains("column 'n' looks like shares") && Contains("--are-counts"));
+  AnswerReading counts;
+  counts.are_counts = true;
+  CHECK(answers_in(hundreds, counts).answers.size() == 200);
+  counts.are_counts = false;
+  counts.columns.weight = "percent";
+  CHECK_THAT(refusal(table_of("percent", {"7", "1", "2", "6"}), counts), Contains("--are-counts"));
+  const std::string sums = table_of("n", {"5", "1", "2", "4"});
+  const std::string of_answers = sums + "a,Sum,6\nb,Sum,6\n";
+  CHECK_THAT(refusal(of_answers, {{}, {}, {{"Sum", "Sum"}}}),
+             Contains("answers.csv:6: answer 'Sum' is the sum of the others"));
+  CHECK_THAT(refusal(of_answers + "Sum,a,7\nSum,b,5\nSum,Sum,12\n"),
+             Contains("stimulus 'Sum'") && Contains("--where 'COLUMN!=Sum'"));
+  const std::string people =
+      "participant,stimulus,response,n\nA,a,a,3\nA,b,b,2\nB,a,a,1\nAll,a,a,4\nAll,b,b,2\n";
+  CHECK_THAT(refusal(people), Contains("answers.csv:5: participant 'All' is the sum"));
+  counts = {};
+  counts.are_counts = true;
+  CHECK(answers_in(people, counts).answers.size() == 12);
+}
+
+TEST_CASE("a count may be written with a decimal point, but not with a point between thousands",
+          "[analysis][answer_tables]") {
+  CHECK(answers_in("stimulus,response,n\na,a,3.0\nb,b,2.00\n").answers.size() == 5);
+  CHECK(answers_in("stimulus;response;n\na;a;3,0\nb;b;2\n").answers.size() == 5);
+  for (const char* const cell : {"1.000", "2.5", "-3", "3.", "many", ""}) {
+    CHECK_THAT(refusal(std::string{"stimulus,response,n\na,a,2\nb,b,"} + cell + "\n"),
+               Contains("is not a count of answers"));
+  }
+}
+
+TEST_CASE("whose answers these are is not passed over, and may be said not to be known",
+          "[analysis][answer_tables]") {
+  const std::string name = GENERATE("Participant.ID", "subject-code", "VP", "ResponseId");
+  const std::string text = name + ",stimulus,response\n1,a,a\n2,b,b\n";
+  CHECK_THAT(refusal(text), Contains("answers.csv:1: column '" + name + "' may say whose") &&
+                                Contains("--participant-column none"));
+  AnswerReading reading;
+  reading.columns.participant = name;
+  CHECK(answers_in(text, reading).are_participants_known);
+  reading.columns.participant = no_column;
+  CHECK_FALSE(answers_in(text, reading).are_participants_known);
+  CHECK_FALSE(answers_in("participant,stimulus,response\nP1,a,a\nP2,b,b\n", reading)
+                  .are_participants_known);
+}
+
+TEST_CASE("columns that are there twice are not passed over", "[analysis][answer_tables]") {
+  const std::string rows = "\na,b,1,0\nb,b,1,1\n";
+  CHECK_THAT(refusal("stimulus,response,correct,correct" + rows),
+             Contains("2 columns 'correct'") && Contains("--correct-column none"));
+  CHECK_THAT(refusal("stimulus,response,n,N" + rows),
+             Contains("n, N could be meant") && Contains("--weights none"));
+  CHECK_THAT(refusal("stimulus,response,response,x" + rows), Contains("2 columns 'response'"));
+  CHECK_THAT(refusal("stimulus,response,part,part" + rows, {{}, {{"part", "1"}}}),
+             Contains("several columns 'part', which --where names"));
+}
+
+TEST_CASE("right answers are compared in whatever words and beside whatever column they stand",
+          "[analysis][answer_tables]") {
+  const auto [column, right, wrong] = GENERATE(table<std::string, std::string, std::string>(
+      {{"Plate.ACC", "1", "0"}, {"Plate_correct", "T", "F"}, {"correct", "hit", "miss"}}));
+  const auto text = [&, &column = column](const std::string& one, const std::string& other) {
+    return "stimulus,Plate.RESP," + column + "\na,a," + one + "\na,b," + other + "\nb,b," + one +
+           "\n";
+  };
+  AnswerReading reading;
+  reading.columns.response = "Plate.RESP";
+  std::string agreeing = text(right, wrong);
+  std::string contrary = text(wrong, right);
+  if (column == "Plate_correct") {
+    reading.columns.response = "Plate_RESP";
+    agreeing.replace(agreeing.find("Plate."), 6, "Plate_");
+    contrary.replace(contrary.find("Plate."), 6, "Plate_");
+  }
+  CHECK(refusal(agreeing, reading) == "accepted");
+  CHECK(answers_in(agreeing, reading).not_compared.empty());
+  CHECK_THAT(refusal(contrary, reading), Contains("33 % of 3") && Contains("67 %"));
+  CHECK(answers_in("stimulus,response,correct\na,a,a\nb,a,b\n").not_compared ==
+        std::set<std::string>{"correct"});
+}
+
+TEST_CASE(
+    "an answer that is no stimulus is refused with all that may be meant, and a stimulus may "
+    "be called None",
+    "[analysis][answer_tables]") {
+  CHECK_THAT(refusal("stimulus,response\na,a\nb,A\n"),
+             Contains("reads like 'a': --merge-alike") && Contains("--responses"));
+  CHECK_THAT(refusal("stimulus,response\na,a\nb,Time out\n"),
+             Contains("if it is none, --where 'COLUMN!=Time out'"));
+  CHECK_THAT(refusal("stimulus,response\nNone,None\na,a\nNone,a\n"),
+             Contains("--responses 'None'"));
+  AnswerReading named;
+  named.responses = {{"None", "None"}};
+  CHECK(answers_in("stimulus,response\nNone,None\na,a\nNone,a\n", named).stimuli.size() == 2);
+}
+
+TEST_CASE("more names that read alike: dashes, apostrophes, what takes no place, idle zeros",
+          "[analysis][answer_tables]") {
+  const auto [one, other] = GENERATE(table<std::string, std::string>({{"a-b", "a\u2013b"},
+                                                                      {"o'k", "o\u2019k"},
+                                                                      {"oak", "o\u200bak"},
+                                                                      {"P01", "P1"},
+                                                                      {"2", "2.0"}}));
+  CHECK(as_read(one) == as_read(other));
+  CHECK(as_read("1.05") != as_read("1.5"));
+  CHECK(as_read("10") != as_read("1"));
+  CHECK(as_read("P100") != as_read("P1"));
+}
+
+TEST_CASE("R's names of rows have no header, and a title is none", "[analysis][answer_tables]") {
+  const auto settled = [](const std::string& text) {
+    NamedCsv csv = csv_of(text);
+    settle_header(csv.text, csv.file);
+    return read_answers({csv}, {});
+  };
+  const std::string rows = "\n\"1\" \"P 1\" \"a\" \"a\"\n\"2\" \"P 1\" \"b\" \"a\"\n";
+  const AnswerTable table = settled("\"participant\" \"stimulus\" \"response\"" + rows);
+  CHECK(lines_of(table).front().starts_with("P 1 a a"));
+  CHECK(table.answers.size() == 2);
+  CHECK_THROWS_WITH(settled("Experiment of today\nparticipant,stimulus,response\nP1,a,a\n"),
+                    Contains("answers.csv:1: 'Experiment of today' is no header"));
+  CHECK_THROWS_WITH(settled("C:\\Taps.edat3\nSubject\tstimulus\tresponse\nP1\ta\ta\n"),
+                    Contains("answers.csv:1: 'C:\\Taps.edat3' is no header"));
 }

@@ -1,0 +1,22 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "analysis/report/answer_tables/answer_checks.hpp"
+#include "analysis/report/answer_tables/answer_table.hpp"
+namespace tapstudy::analysis {
+// The columns that hold neither stimuli nor answers nor what else is read of a file, and its
+// header.
+struct OtherColumns {
+  std::vector<std::string> header{};
+  std::vector<std::size_t> places{};
+  std::string weight{};  // by its name or as asked for; empty: none
+};
+
+// Each answer as often as its row says, if rows say it; table.weight_column is that column. A table
+// that was counted has one row for each kind of answer. Throws InvalidInput where it is not clear
+// whether a column counts answers, where it holds shares, where one row sums up others, for more
+// than a million answers and none at all.
+void weigh_answers(const OtherColumns& columns, const AnswerReading& reading, AnswerTable& table,
+                   AnswerOrigins& origins);
+}  // namespace tapstudy::analysis

@@ -127,6 +127,36 @@ constexpr std::array rules{
          "AND NOT EXISTS (SELECT 1 FROM session AS silent "
          "  WHERE silent.participant_id = session.participant_id "
          "  AND silent.session_id NOT IN (SELECT session_id FROM session_event))"},
+    // of one monotonic clock; an action may be added after the session, by the wall clock
+    Rule{"times of a session are from its begin on",
+         "SELECT state || ' of session ' || session_id || ' (row ' || rowid || ')' "
+         "FROM session_event WHERE NOT (t_s >= 0 AND t_s < 1e9) "
+         "UNION ALL SELECT form || ' of session ' || session_id FROM form_answer "
+         "WHERE NOT (t_s >= 0 AND t_s < 1e9) "
+         "UNION ALL SELECT 'action ' || action_id FROM operator_action "
+         "WHERE NOT (t_s >= 0 AND t_s < 1e12)"},
+    Rule{"a trial is over before what comes after it",
+         "WITH presented AS (SELECT session_id, number, state, t_s, "
+         "    lead(t_s) OVER (PARTITION BY session_id ORDER BY rowid) AS end_s "
+         "  FROM session_event "
+         "  WHERE state NOT IN ('exploring', 'answering', 'confirmed', 'confidence')), "
+         "spans AS (SELECT session_id, number, sum(end_s - t_s) AS span_s FROM presented "
+         "  WHERE state = 'ready' GROUP BY session_id, number HAVING count(*) = count(end_s)) "
+         "SELECT 'trial ' || max(trial_id) || ' (' || round(sum(duration_s), 3) || ' s in ' || "
+         "  round(span_s, 3) || ' s of session ' || session_id || ')' "
+         "FROM trial JOIN spans USING (session_id, number) JOIN session USING (session_id) "
+         "JOIN participant USING (participant_id) "
+         "WHERE NOT (mode = 'simulated' AND presented = 'real') "  // no tick passes then
+         "GROUP BY session_id, number HAVING sum(duration_s) > span_s + 1e-6"},
+    Rule{"a questionnaire is sent while it is shown",
+         "WITH shown AS (SELECT session_id, state, detail, t_s, "
+         "    lead(t_s, 1, 1e9) OVER (PARTITION BY session_id ORDER BY rowid) AS end_s "
+         "  FROM session_event) "
+         "SELECT DISTINCT form || ' of session ' || session_id || ' at ' || round(t_s, 3) || ' s' "
+         "FROM form_answer WHERE session_id IN (SELECT session_id FROM session_event) "
+         "AND NOT EXISTS (SELECT 1 FROM shown WHERE shown.session_id = form_answer.session_id "
+         "  AND state = 'form' AND detail = form "
+         "  AND form_answer.t_s BETWEEN shown.t_s AND end_s)"},
     Rule{"a questionnaire that was answered was shown",
          "SELECT form || ' of session ' || session_id FROM (SELECT session_id, form, "
          "  count(DISTINCT asked) AS answered FROM form_answer GROUP BY session_id, form) AS given "

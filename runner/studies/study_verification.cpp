@@ -15,6 +15,7 @@
 #include "results/store_error.hpp"
 #include "runner/session/engine/open_study.hpp"
 #include "runner/session/engine/stored_names.hpp"
+#include "runner/studies/session_times.hpp"
 #include "runner/studies/stored_course.hpp"
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
@@ -116,6 +117,9 @@ Verification verification_of(results::Store& store, const std::string& directory
   if (protocol) {
     check_by_protocol(store, *protocol, found);
   }
+  CheckedTimes times = checked_session_times(store);
+  std::ranges::move(times.wrong, std::back_inserter(found.broken));
+  std::ranges::move(times.unlikely, std::back_inserter(found.remarks));
   found.trials = std::ssize(store.trials());
   const results::JournalEntries in_store = store.entries_for_journal();
   found.answers = std::ssize(in_store.answers);

@@ -22,6 +22,7 @@
 #include "runner/session/engine/between_trials.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/engine/stored_names.hpp"
+#include "runner/studies/session_times.hpp"
 #include "runner/studies/simulated_study.hpp"
 #include "runner/studies/stored_results.hpp"
 #include "runner/studies/stored_study.hpp"
@@ -354,6 +355,68 @@ TEST_CASE("settings within one tick are no fault, unless one stands twice or out
   CHECK(settings("(0, 1), (5, 2), (5, 1), (5, 2), (6, 1)") == false);
   CHECK(settings("(0, 1), (5, 2), (5, 2)") == true);
   CHECK(settings("(0, 1), (5, 2), (4, 1)") == true);
+}
+
+TEST_CASE("verification names what does not fit into the time of its session", "[runner][verify]") {
+  ChangedStudy& study = changed_study();
+  const std::string of_last = " WHERE session_id = (SELECT max(session_id) FROM session) ";
+  const auto what_is_said = [&](const std::string& change, const std::string& of) {
+    std::string said;
+    study.is_noticed(change, of, [&] {
+      const runner::Verification found = runner::verification_of(study.store(), study.path());
+      said = fmt::format("{}", fmt::join(found.broken, "\n"));
+    });
+    return said;
+  };
+  const std::string states = "SELECT t_s FROM session_event";
+  CHECK_THAT(what_is_said("UPDATE session_event SET t_s = t_s + 0.5" + of_last +
+                              "AND state = 'ready' AND number = 1",
+                          states),
+             Contains("a trial is over before what comes after it: not trial ") &&
+                 Contains("(2.0 s in 1.5 s of session "));
+  CHECK_THAT(
+      what_is_said("UPDATE session_event SET t_s = 30.0" + of_last + "AND state = 'saved'", states),
+      Contains("ready at 20 s is earlier than what came before") ||
+          Contains("'ready' at 20 s is earlier than what came before"));
+  CHECK_THAT(
+      what_is_said("UPDATE form_answer SET t_s = 12.0" + of_last, "SELECT t_s FROM form_answer"),
+      Contains("a questionnaire is sent while it is shown: not about of session ") &&
+          Contains("at 12.0 s"));
+  CHECK_THAT(what_is_said("UPDATE operator_action SET t_s = -1.0 WHERE action_id = 2",
+                          "SELECT t_s FROM operator_action"),
+             Contains("times of a session are from its begin on: not action 2"));
+}
+
+TEST_CASE(
+    "a session that began before the one before it was over is told, and no damage where the "
+    "clock was set back",
+    "[runner][verify]") {
+  const testing::TempDirectory directory;
+  results::Store store =
+      results::Store::open_or_create(directory.path(), testing::small_study::study);
+  const auto begin = [&](const std::string& person, const std::string& utc) {
+    results::SessionRow row = testing::small_study::session(person);
+    row.participant_index = person == "P01" ? 0 : 1;
+    row.started_utc = utc;
+    store.add_session(row);
+    store.add_session_events({{row.id, 0.0, "begun", {}, ""}, {row.id, 600.0, "ended", {}, ""}});
+  };
+  const auto checked = [&] { return runner::checked_session_times(store); };
+  begin("P01", "2026-03-29T00:55:00Z");
+  begin("P02", "2026-03-29T00:56:00Z");  // at another machine
+  begin("P01", "2026-03-29T01:05:00Z");  // as the one before ends
+  CHECK(checked().unlikely.empty());
+  begin("P01", "2026-03-29T00:30:00Z");
+  begin("P01", "2026-03-29T00:40:00Z");
+  REQUIRE(checked().unlikely.size() == 1);
+  CHECK_THAT(checked().unlikely.front(),
+             Contains("session 4 of 'P01' began at 2026-03-29T00:30:00Z, 2700 s before session 3 "
+                      "of the same participant was over") &&
+                 Contains("the clock was set back"));
+  CHECK(checked().wrong.empty());
+  begin("P02", "yesterday");
+  CHECK(checked().wrong ==
+        std::vector<std::string>{"session 6: 'yesterday' is no time at which it began"});
 }
 
 TEST_CASE("whoever reads a study that was changed reads it, or ends in an error that says why",

@@ -484,9 +484,9 @@ std::optional<PersonalValues> shares_right(const BlockDesign& design,
   if (design.has_own_guess_rate) {
     return std::nullopt;
   }
-  return personal_values(
+  return personal_shares(
       fmt::format("share of right answers, {}, chance {:.3g}", design.task, design.guess_rate),
-      false, results.participants,
+      results.participants,
       [](const ParticipantDiscrimination& person) { return share_of(person.correct); });
 }
 }  // namespace

@@ -115,8 +115,8 @@ void add_tests(const BlockDesign& design, const Randomisation& randomisation,
 }
 
 PersonalValues shares_right(const IdentificationSummary& summary) {
-  return personal_values(
-      fmt::format("share of right answers, chance {:.3g}", summary.matrix.chance()), false,
+  return personal_shares(
+      fmt::format("share of right answers, chance {:.3g}", summary.matrix.chance()),
       summary.participants,
       [](const ParticipantAccuracy& person) { return share_of(person.accuracy); });
 }

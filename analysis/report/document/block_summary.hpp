@@ -22,6 +22,7 @@ struct PersonalValues {
   // Where the value of somebody lies who has none, such as above all levels that were presented.
   std::map<std::string, Interval> beyond{};
   std::set<std::string> participants{};  // all who took part; those above where it is empty
+  std::optional<Interval> scale{};       // beyond whose ends no value can be; unset: there are none
 };
 
 std::set<std::string> participants_of(const PersonalValues& values);
@@ -32,13 +33,21 @@ int number_in_both(const PersonalValues& first, const PersonalValues& second);
 template <class People, class ValueOf>
 PersonalValues personal_values(std::string measure, bool is_ratio, const People& people,
                                const ValueOf& value_of) {
-  PersonalValues values{std::move(measure), is_ratio, {}, {}, {}};
+  PersonalValues values{std::move(measure), is_ratio, {}, {}, {}, {}};
   for (const auto& person : people) {
     values.participants.insert(person.participant_id);
     if (const std::optional<double> value = value_of(person)) {
       values.by_participant[person.participant_id] = *value;
     }
   }
+  return values;
+}
+
+// The same, of shares.
+template <class People, class ShareOf>
+PersonalValues personal_shares(std::string measure, const People& people, const ShareOf& share_of) {
+  PersonalValues values = personal_values(std::move(measure), false, people, share_of);
+  values.scale = Interval{0.0, 1.0};
   return values;
 }
 

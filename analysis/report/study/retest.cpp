@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 
 #include "analysis/statistics/population/test_retest.hpp"
 namespace tapstudy::analysis {
@@ -26,10 +28,32 @@ BothSessions values_of_both(const PersonalValues& first, const PersonalValues& s
   return pair;
 }
 
-Cell correlation_cell(const BothSessions& pair) {
+// What is said of two sessions.
+std::string named_pair(const BlockSummary& first, const BlockSummary& second) {
+  return fmt::format("{} in {} and {}", first.personal->measure, first.block, second.block);
+}
+
+Cell correlation_cell(const BothSessions& pair, const std::string& named,
+                      std::vector<CitingText>& remarks) {
   const auto correlation = intraclass_correlation({pair.first, pair.second});
-  return correlation ? interval(correlation->value, correlation->interval)
-                     : nothing(interval_column("", "icc"));
+  if (correlation) {
+    return interval(correlation->value, correlation->interval);
+  }
+  remarks.emplace_back(fmt::format(
+      "There is no intra-class correlation of {}: {}.", named,
+      do_people_differ({pair.first, pair.second})
+          ? "all participants changed alike, which leaves nothing to tell how well it is known"
+          : "participants' means over both sessions do not differ, so that it is not defined"));
+  return nothing(interval_column("", "icc"));
+}
+
+// Whether all are at the one end of their scale, or all at the other, both times.
+bool are_at_an_end(const BothSessions& pair, const std::optional<Interval>& scale) {
+  const auto all_are = [&](double end) {
+    const auto is_there = [end](double value) { return value == end; };
+    return std::ranges::all_of(pair.first, is_there) && std::ranges::all_of(pair.second, is_there);
+  };
+  return scale && (all_are(scale->low) || all_are(scale->high));
 }
 
 // People see the limits; how well they are known is for programs.
@@ -42,19 +66,43 @@ Cell limits_cell(const LimitsOfAgreement& found, bool is_ratio) {
   return low;
 }
 
-void add_row(const BlockSummary& first, const BlockSummary& second, ReportTable& differences,
-             ReportTable& ratios) {
+Column limits_column() {
+  return {"limits of agreement",
+          {"lower_limit", "lower_limit_low", "lower_limit_high", "upper_limit", "upper_limit_low",
+           "upper_limit_high"}};
+}
+
+struct RetestTables {
+  ReportTable differences;
+  ReportTable ratios;
+  std::vector<CitingText> remarks{};  // about pairs of blocks
+};
+
+void add_row(const BlockSummary& first, const BlockSummary& second, RetestTables& tables) {
   const PersonalValues& of_first = *first.personal;
   const BothSessions pair = values_of_both(of_first, *second.personal);
+  const std::string named = named_pair(first, second);
   if (pair.first.size() < 2) {
+    if (!pair.first.empty()) {
+      tables.remarks.emplace_back(fmt::format(
+          "Of {} only one participant has both values: nothing can be said of changes.", named));
+    }
     return;
   }
   const LimitsOfAgreement found = limits_of_agreement(pair.first, pair.second);
-  (of_first.is_ratio ? ratios : differences)
+  Cell limits = limits_cell(found, of_first.is_ratio);
+  if (are_at_an_end(pair, of_first.scale)) {
+    limits = nothing(limits_column(), "none");
+    tables.remarks.emplace_back(
+        fmt::format("There are no limits of agreement of {}: all values are at the same end of the "
+                    "scale, where no change can be seen.",
+                    named));
+  }
+  (of_first.is_ratio ? tables.ratios : tables.differences)
       .rows.push_back(
           {word(of_first.measure), word(first.block), word(second.block),
-           difference_or_ratio(found.mean, found.mean_interval, of_first.is_ratio),
-           limits_cell(found, of_first.is_ratio), correlation_cell(pair),
+           difference_or_ratio(found.mean, found.mean_interval, of_first.is_ratio), limits,
+           correlation_cell(pair, named, tables.remarks),
            people_known(std::ssize(pair.first), number_in_both(of_first, *second.personal))});
 }
 
@@ -62,14 +110,8 @@ ReportTable table_of_changes(const std::string& name, const std::string& title,
                              const Column& change) {
   return {name,
           title,
-          {column("", "measure"),
-           column("first", "first"),
-           column("second", "second"),
-           change,
-           {"limits of agreement",
-            {"lower_limit", "lower_limit_low", "lower_limit_high", "upper_limit", "upper_limit_low",
-             "upper_limit_high"}},
-           interval_column("ICC (95 % CI)", "icc"),
+          {column("", "measure"), column("first", "first"), column("second", "second"), change,
+           limits_column(), interval_column("ICC (95 % CI)", "icc"),
            people_column("participants", "participants")}};
 }
 
@@ -84,39 +126,55 @@ CitingText how_changes_were_computed() {
       "Bland & Altman 1986"_source, "Carkeet 2015"_source, "McGraw & Wong 1996"_source);
 }
 
-const BlockSummary* with_values(const std::vector<std::shared_ptr<const BlockSummary>>& blocks,
-                                const std::string& name) {
-  const auto found =
-      std::ranges::find_if(blocks, [&](const auto& block) { return block->block == name; });
-  return found == blocks.end() || !(*found)->personal ? nullptr : found->get();
+// Summaries with people's values of the block of that name: the whole, or its parts, by what their
+// names add to it.
+std::map<std::string, const BlockSummary*> with_values(
+    const std::vector<std::shared_ptr<const BlockSummary>>& blocks, const std::string& name) {
+  std::map<std::string, const BlockSummary*> found;
+  for (const auto& block : blocks) {
+    if (block->personal && (block->block == name || block->part_of == name)) {
+      found.emplace(block->block.substr(name.size()), block.get());
+    }
+  }
+  return found;
+}
+
+void add_rows(const std::map<std::string, const BlockSummary*>& first,
+              const std::map<std::string, const BlockSummary*>& second, RetestTables& tables) {
+  for (const auto& [part, summary] : first) {
+    if (const auto again = second.find(part); again != second.end()) {
+      add_row(*summary, *again->second, tables);
+    }
+  }
 }
 }  // namespace
 
 std::optional<ReportSection> retest_section(
     const std::vector<std::shared_ptr<const BlockSummary>>& blocks,
     const std::vector<RepeatedBlock>& repeated) {
-  ReportTable differences =
+  RetestTables tables{
       table_of_changes("retest_differences", "Changes of participants' values",
-                       interval_column("second - first (95 % CI, t)", "difference"));
-  ReportTable ratios = table_of_changes("retest_ratios", "Ratios of participants' values",
-                                        interval_column("second / first (95 % CI, t)", "ratio"));
+                       interval_column("second - first (95 % CI, t)", "difference")),
+      table_of_changes("retest_ratios", "Ratios of participants' values",
+                       interval_column("second / first (95 % CI, t)", "ratio"))};
   for (const RepeatedBlock& block : repeated) {
     for (std::size_t i = 0; i < block.blocks.size(); ++i) {
-      const BlockSummary* const first = with_values(blocks, block.blocks[i]);
       for (std::size_t j = i + 1; j < block.blocks.size(); ++j) {
-        const BlockSummary* const second = with_values(blocks, block.blocks[j]);
-        if (first != nullptr && second != nullptr) {
-          add_row(*first, *second, differences, ratios);
-        }
+        add_rows(with_values(blocks, block.blocks[i]), with_values(blocks, block.blocks[j]),
+                 tables);
       }
     }
   }
-  if (differences.rows.empty() && ratios.rows.empty()) {
+  const bool has_rows = !tables.differences.rows.empty() || !tables.ratios.rows.empty();
+  if (!has_rows && tables.remarks.empty()) {
     return std::nullopt;
   }
-  ReportSection section{"Test and retest", {differences, ratios}};
+  ReportSection section{"Test and retest", {tables.differences, tables.ratios}};
   section.name = study_sections::retest;
-  section.remarks.emplace_back(how_changes_were_computed());
+  if (has_rows) {
+    section.remarks.emplace_back(how_changes_were_computed());
+  }
+  std::ranges::move(tables.remarks, std::back_inserter(section.remarks));
   return section;
 }
 }  // namespace tapstudy::analysis

@@ -16,7 +16,8 @@ struct RepeatedBlock {
 
 // What participants' values in one session say of those in a later one: the mean change, the limits
 // of agreement and the intra-class correlation (limits_of_agreement, intraclass_correlation), of
-// logarithms for ratios. Unset where no block has values of two participants in two sessions.
+// logarithms for ratios; of a block with parts those of each part. A remark says what cannot be
+// known of a pair of sessions, and why. Unset where nobody has values in two sessions.
 std::optional<ReportSection> retest_section(
     const std::vector<std::shared_ptr<const BlockSummary>>& blocks,
     const std::vector<RepeatedBlock>& repeated);

@@ -100,14 +100,29 @@ LimitsOfAgreement limits_of_agreement(const std::vector<double>& first,
   return found;
 }
 
+namespace {
+constexpr double rounding = 1e-24;  // of squares, in proportion
+}  // namespace
+
+bool do_people_differ(const std::vector<std::vector<double>>& occasions) {
+  check(occasions);
+  double largest = 0.0;
+  for (const std::vector<double>& values : occasions) {
+    for (const double value : values) {
+      largest = std::max(largest, value * value);
+    }
+  }
+  return mean_squares(occasions).people > rounding * largest;
+}
+
 std::optional<IntraclassCorrelation> intraclass_correlation(
     const std::vector<std::vector<double>>& occasions) {
-  check(occasions);
+  const bool differ = do_people_differ(occasions);
   const MeanSquares squares = mean_squares(occasions);
   const auto n = static_cast<double>(occasions.front().size());
   const auto k = static_cast<double>(occasions.size());
   const double scale = squares.people + squares.occasions + squares.residual;
-  if (squares.residual <= 1e-24 * scale) {  // rounding
+  if (!differ || squares.residual <= rounding * scale) {
     return std::nullopt;
   }
   const double value =

@@ -32,8 +32,10 @@ struct IntraclassCorrelation {
   Interval interval;  // 95 %, by F with Satterthwaite's degrees of freedom (of the same)
 };
 // occasions: each with the values of the same people. Throws InvalidInput for fewer than two
-// occasions or people, unequal numbers, and values that are not finite; unset where all values are
-// equal, and where nothing is left over, so that there is no interval.
+// occasions or people, unequal numbers, and values that are not finite; unset where people do not
+// differ, and where nothing is left over, so that there is no interval.
 std::optional<IntraclassCorrelation> intraclass_correlation(
     const std::vector<std::vector<double>>& occasions);
+// Whether people's means over the occasions differ, by more than rounding. Throws likewise.
+bool do_people_differ(const std::vector<std::vector<double>>& occasions);
 }  // namespace tapstudy::analysis

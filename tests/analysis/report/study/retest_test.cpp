@@ -1,5 +1,7 @@
 #include "analysis/report/study/retest.hpp"
 
+#include <fmt/format.h>
+
 #include "analysis/statistics/population/test_retest.hpp"
 #include "support/catch.hpp"
 using namespace tapstudy;
@@ -62,9 +64,65 @@ TEST_CASE("thresholds of two sessions are compared by their ratio", "[analysis][
   CHECK(number_of(section->tables[1].rows.front()[4], 3) == Approx(2.0));
 }
 
-TEST_CASE("whoever came once is no retest", "[analysis][report][retest]") {
-  CHECK_FALSE(retest_section(two_days(false, {{"A", 0.5}, {"B", 0.5}}, {{"C", 0.5}, {"A", 0.75}}),
-                             test_of_two_days));
+TEST_CASE("whoever came once is no retest, and of one person nothing can be said",
+          "[analysis][report][retest]") {
+  CHECK_FALSE(
+      retest_section(two_days(false, {{"A", 0.5}, {"B", 0.5}}, {{"C", 0.5}}), test_of_two_days));
   CHECK_FALSE(
       retest_section(two_days(false, {{"A", 0.5}, {"B", 0.5}}, {{"A", 0.5}, {"B", 0.75}}), {}));
+  const auto one = retest_section(
+      two_days(false, {{"A", 0.5}, {"B", 0.5}}, {{"C", 0.5}, {"A", 0.75}}), test_of_two_days);
+  REQUIRE(one);
+  CHECK(one->tables[0].rows.empty());
+  REQUIRE(one->remarks.size() == 1);
+  CHECK_THAT(one->remarks.front().words, Contains("share in test.day_1 and test.day_2 only one "
+                                                  "participant has both values"));
+}
+
+TEST_CASE("where all shares are at one end no change can be seen, and there are no limits of it",
+          "[analysis][report][retest]") {
+  const double end = GENERATE(0.0, 1.0);
+  const std::map<std::string, double> at_end{{"A", end}, {"B", end}, {"C", end}};
+  const auto row_of = [](const Blocks& blocks) {
+    return retest_section(blocks, test_of_two_days)->tables[0].rows.front();
+  };
+  Blocks blocks;
+  for (const auto& block : two_days(false, at_end, at_end)) {
+    auto of_shares = std::make_shared<BlockSummary>(*block);
+    of_shares->personal->scale = Interval{0.0, 1.0};
+    blocks.push_back(of_shares);
+  }
+  const auto row = row_of(blocks);
+  CHECK(row[4].text == "none");
+  CHECK(row[4].values == std::vector<Value>(6));
+  const auto remarks = retest_section(blocks, test_of_two_days)->remarks;
+  REQUIRE(remarks.size() == 3);
+  CHECK_THAT(remarks[1].words, Contains("no limits of agreement of share in test.day_1 and "));
+  CHECK_THAT(remarks[2].words, Contains("no intra-class correlation of share in test.day_1 and ") &&
+                                   Contains("do not differ"));
+  // of a measure without ends all might have changed
+  CHECK(std::get<double>(row_of(two_days(false, at_end, at_end))[4].values[0]) == 0.0);
+}
+
+TEST_CASE("of a block with parts each part is held against the same part of the other session",
+          "[analysis][report][retest]") {
+  Blocks parts;
+  for (const std::string day : {"test.day_1", "test.day_2"}) {
+    for (const double at : {3.0, 6.0}) {
+      BlockDesign design;
+      design.name = fmt::format("{}_at_mass_{}", day, at);
+      design.part_of = day;
+      auto part = std::make_shared<BlockSummary>(design);
+      const double factor = day == "test.day_1" ? 1.0 : at;
+      part->personal = PersonalValues{"threshold", true, {{"A", factor}, {"B", 2.0 * factor}}};
+      parts.push_back(part);
+    }
+  }
+  const auto section = retest_section(parts, test_of_two_days);
+  REQUIRE(section);
+  REQUIRE(section->tables[1].rows.size() == 2);
+  CHECK(section->tables[1].rows[0][1].text == "test.day_1_at_mass_3");
+  CHECK(section->tables[1].rows[0][2].text == "test.day_2_at_mass_3");
+  CHECK(number_of(section->tables[1].rows[0][3], 0) == Approx(3.0));
+  CHECK(number_of(section->tables[1].rows[1][3], 0) == Approx(6.0));
 }

@@ -133,4 +133,7 @@ TEST_CASE("what two people did not measure twice has no agreement", "[analysis][
   CHECK_FALSE(limits_of_agreement({1.0, 2.0}, {2.0, 3.0}).low_interval);
   CHECK_FALSE(intraclass_correlation({{1.0, 2.0}, {2.0, 3.0}}));
   CHECK_FALSE(intraclass_correlation({{0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}}));
+  CHECK_FALSE(intraclass_correlation({{1.0, 2.0}, {2.0, 1.0}}));  // means do not differ
+  CHECK_FALSE(do_people_differ({{0.1, 0.3}, {0.3, 0.1}}));
+  CHECK(do_people_differ({{1.0, 2.0}, {2.0, 3.0}}));
 }

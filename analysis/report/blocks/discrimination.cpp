@@ -432,9 +432,6 @@ std::vector<CitingText> remarks_on(const BlockDesign& design,
             "on, each counting the same; those "
             "of one participant take the answers as independent."
           : "The interval takes the answers as independent."};
-  if (const auto remark = remark_on_extreme_share(correct_of(results.participants))) {
-    remarks.emplace_back(*remark);
-  }
   if (!design.premise.empty()) {
     remarks.push_back("Not tested: " + design.premise);
   }

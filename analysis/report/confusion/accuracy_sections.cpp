@@ -175,12 +175,6 @@ ReportSection accuracy_section(const IdentificationSummary& summary) {
         "Wilson 1927"_source, "Wedderburn 1974"_source, "Efron 1987"_source,
         "Hesterberg 2015"_source, "Williams 1975"_source));
   }
-  std::vector<Proportion> people;
-  std::ranges::transform(summary.participants, std::back_inserter(people),
-                         &ParticipantAccuracy::accuracy);
-  if (const auto remark = remark_on_extreme_share(people)) {
-    section.remarks.emplace_back(*remark);
-  }
   section.remarks.push_back("All answers against chance: " + summary.chance_test + ".");
   add_remark_on_chance(summary, section);
   return section;

@@ -77,22 +77,6 @@ std::string over_participants(const Proportion& all, const MeanShare& over) {
                        : fmt::format("({} participants, {})", over.participants, range);
 }
 
-std::optional<std::string> remark_on_extreme_share(const std::vector<Proportion>& participants) {
-  constexpr double extreme = 0.85;
-  constexpr double much = 0.15;
-  const auto over = beta_binomial_mean(participants);
-  const auto share = mean_share(participants);
-  if (!over || !share || !share->interval || std::max(share->mean, 1.0 - share->mean) < extreme ||
-      over->intraclass_correlation < much) {
-    return std::nullopt;
-  }
-  return fmt::format(
-      "The mean share is near {} and participants differ much (intra-class correlation {:.2f}): of "
-      "simulated studies like that 85 to 93 in 100, not 95, have an interval that holds the mean, "
-      "because the few who are far from the others are easily not in the sample.",
-      share->mean < 0.5 ? 0 : 1, over->intraclass_correlation);
-}
-
 Cell pooled_proportion(const std::vector<Proportion>& participants) {
   if (participants.size() == 1) {
     return proportion(participants.front());

@@ -26,10 +26,6 @@ std::string p_value(const HypothesisResult& result);
 // why.
 std::string over_participants(const Proportion& all, const MeanShare& over);
 
-// The interval of a mean share near 0 or 1 of participants who differ much does not hold as often
-// as it says (measured: analysis/README); nothing of other means.
-std::optional<std::string> remark_on_extreme_share(const std::vector<Proportion>& participants);
-
 // What all participants answered, for a proportion_column: the counts together, with an interval
 // over participants (mean_share), because the answers of one are not independent of one
 // another. Of a single participant the score interval; without one where it takes more participants

@@ -217,6 +217,44 @@ Interval score_interval(double mean, double dispersion, double n) {
   return {mean <= 0.0 ? 0.0 : std::max(0.0, centre - half),
           mean >= 1.0 ? 1.0 : std::min(1.0, centre + half)};
 }
+
+// How much the likelihood has to say of how people differ: nothing of means that are not near an
+// end of the scale, half at the end.
+double weight_of_likelihood(double mean) {
+  constexpr double first = 0.75;  // of the way from 1/2 to the end
+  return 0.5 * std::clamp((std::abs(2.0 * mean - 1.0) - first) / (1.0 - first), 0.0, 1.0);
+}
+
+// The variance of the mean of shares, in proportion to mean (1 - mean) / people, of the likeliest
+// intra-class correlation of people with that mean.
+double likeliest_dispersion(const std::vector<Proportion>& people, double mean) {
+  const double eta = profile_at(people, mean).eta;
+  double sum = 0.0;
+  for (const Proportion& person : people) {
+    const auto trials = static_cast<double>(person.trials);
+    sum += (1.0 + (trials - 1.0) * eta * eta) / trials;
+  }
+  return sum / static_cast<double>(people.size());
+}
+
+// As score_interval, with what a mean so far from the one observed would say of how people differ.
+Interval interval_near_end(const std::vector<Proportion>& people, double mean, double dispersion) {
+  const auto n = static_cast<double>(people.size());
+  const double weight = weight_of_likelihood(mean);
+  const double t = t_quantile(0.975, n - 1.0);
+  const double shown = t * t * dispersion;
+  const double cut = n * std::log1p(t * t / (n - 1.0));
+  const auto excess = [&](double other) {
+    const double likeliest = cut * likeliest_dispersion(people, other);
+    const double both = std::pow(shown, 1.0 - weight) * std::pow(likeliest, weight);
+    return (mean - other) * (mean - other) - std::max(shown, both) * other * (1.0 - other) / n;
+  };
+  constexpr double least = 1e-9;
+  constexpr double most = 1.0 - least;
+  // whole to the last digit where all answers are alike, beside which excess is 0 at the end itself
+  return {mean <= least ? 0.0 : root(excess, least, std::min(mean, most)),
+          mean >= most ? 1.0 : root(excess, std::max(mean, least), most)};
+}
 }  // namespace
 
 std::optional<MeanShare> mean_share(const std::vector<Proportion>& participants) {
@@ -227,8 +265,10 @@ std::optional<MeanShare> mean_share(const std::vector<Proportion>& participants)
   const MeanAndSpread of = mean_and_spread(shares_of(people));
   MeanShare result{static_cast<int>(people.size()), of.mean, {}};
   if (people.size() > 2) {
-    result.interval =
-        score_interval(of.mean, dispersion(people, of), static_cast<double>(people.size()));
+    const double shown = dispersion(people, of);
+    result.interval = weight_of_likelihood(of.mean) > 0.0
+                          ? interval_near_end(people, of.mean, shown)
+                          : score_interval(of.mean, shown, static_cast<double>(people.size()));
   }
   return result;
 }

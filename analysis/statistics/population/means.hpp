@@ -30,8 +30,14 @@ struct MeanShare {
   // s^2 the variance of n shares, t the 97.5 % quantile with n - 1 degrees of freedom. phi is at
   // least share_of_binomial of what independent answers give, mean(1 / trials), because shares are
   // discrete and may agree by chance; where fewer than two answers are right, or wrong, it is all
-  // of that. It lies within [0, 1]. Unset for two participants: their interval is as good as [0,
-  // 1].
+  // of that. Near an end of the scale the few who are far from the others are easily not in the
+  // sample, and s^2 is too small: for means beyond .875 (or below .125) t^2 phi is there the larger
+  // of itself and its weighted geometric mean with
+  //   n ln(1 + t^2 / (n - 1)) phi(m),
+  // phi(m) by the likeliest intra-class correlation of a beta-binomial distribution of mean m; the
+  // weight grows from 0 to 1/2 at the end. The cut is that of a profile likelihood (see
+  // censored_contrast). It lies within [0, 1]. Unset for two participants: their interval is as
+  // good as [0, 1].
   std::optional<Interval> interval;
 };
 inline constexpr double share_of_binomial = 0.05;

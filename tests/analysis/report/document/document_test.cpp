@@ -201,19 +201,3 @@ TEST_CASE("answers of one participant have their score interval, of none no shar
   CHECK(one_of_two.values == std::vector<Value>{6, 8, 0.75, Value{}, Value{}});
   CHECK_THAT(one_of_two.text.words, !Contains("CI"));
 }
-
-TEST_CASE("an interval is doubted in words where the mean share is near 1 and people differ much",
-          "[analysis][document]") {
-  const auto remark = [](const std::vector<int>& right) {
-    std::vector<analysis::Proportion> people;
-    for (const int one : right) {
-      people.push_back({one, 20});
-    }
-    return analysis::remark_on_extreme_share(people).has_value();
-  };
-  CHECK(remark({20, 20, 20, 20, 20, 8}));
-  CHECK(remark({0, 0, 0, 0, 0, 12}));
-  CHECK_FALSE(remark({19, 18, 19, 20, 19, 18}));  // who hardly differ
-  CHECK_FALSE(remark({20, 20, 4, 12, 6, 20}));    // whose mean is not near 1
-  CHECK_FALSE(remark({20}));
-}

@@ -65,6 +65,40 @@ TEST_CASE("the interval over participants is where R's score of the mean is that
   }
 }
 
+TEST_CASE("near an end the interval is where R's likelihood and the spread say half each",
+          "[analysis][participants]") {
+  const std::vector<Proportion> near_end{{16, 16}, {30, 30}, {14, 16}, {6, 6}, {15, 16}, {16, 16}};
+  std::vector<std::int64_t> right;
+  std::vector<std::int64_t> trials;
+  for (const Proportion& person : near_end) {
+    right.push_back(person.successes);
+    trials.push_back(person.trials);
+  }
+  const auto r = r_numbers(
+      "k <- " + r_vector(right) + "; t <- " + r_vector(trials) +
+      "; p <- k / t; n <- length(p); b <- mean(p); q <- qt(.975, n - 1)^2;"
+      "shown <- q * max(var(p) / (b * (1 - b)), .05 * mean(1 / t));"
+      "l <- function(m, e) { v <- 1 / e^2 - 1; sum(lbeta(k + v * m, t - k + v * (1 - m)) - "
+      "lbeta(v * m, v * (1 - m))) };"
+      "phi <- function(m) { e <- optimize(function(e) l(m, e), c(1e-3, .999), maximum = TRUE, tol "
+      "= 1e-9)$maximum; mean((1 + (t - 1) * e^2) / t) };"
+      "w <- .5 * min(1, max(0, (abs(2 * b - 1) - .75) / .25));"
+      "e <- function(m) (b - m)^2 - max(shown, shown^(1 - w) * (n * log(1 + q / (n - 1)) * "
+      "phi(m))^w) * m * (1 - m) / n;"
+      "out(uniroot(e, c(1e-6, b), tol = 1e-12)$root, uniroot(e, c(b, 1 - 1e-9), tol = "
+      "1e-12)$root)");
+  const Interval found = *mean_share(near_end)->interval;
+  CHECK(found.low == Approx(r[0]).epsilon(1e-4));
+  CHECK(found.high == Approx(r[1]).epsilon(1e-4));
+  std::vector<Proportion> wrong;
+  for (const Proportion& person : near_end) {
+    wrong.push_back({person.trials - person.successes, person.trials});
+  }
+  const Interval turned = *mean_share(wrong)->interval;  // errors are as uncertain as right answers
+  CHECK(turned.low == Approx(1.0 - found.high).margin(1e-6));
+  CHECK(turned.high == Approx(1.0 - found.low).margin(1e-6));
+}
+
 TEST_CASE("the mean over participants and their intra-class correlation are glmmTMB's",
           "[analysis][participants]") {
   std::vector<int> right;
@@ -160,9 +194,10 @@ TEST_CASE("participants who do not differ, or are all right, have an interval to
   REQUIRE(perfect);
   CHECK(perfect->participants == 4);
   CHECK(perfect->interval->high == 1.0);
-  // Wilson's of 32 answers, with t of three degrees of freedom
+  // Wilson's of 32 answers, with t of three degrees of freedom, takes people for alike
   const double t = r_numbers("out(qt(.975, 3))").front();
-  CHECK(perfect->interval->low == Approx(1.0 / (1.0 + t * t / 32.0)));
+  CHECK(perfect->interval->low < 1.0 / (1.0 + t * t / 32.0));
+  CHECK(perfect->interval->low > 0.5);
   CHECK_FALSE(mean_proportion({{3, 8}}));
   CHECK_THROWS_AS(mean_proportion({{9, 8}, {1, 8}}), core::InvalidInput);
 }
@@ -239,6 +274,27 @@ TEST_CASE("the interval over participants holds their mean in 93 to 97 % of stud
       }
     }
   }
+}
+
+TEST_CASE("a share near 1 is held also where those who find it hard stop early",
+          "[analysis][participants]") {
+  constexpr int studies = 2000;
+  constexpr double mean = 0.9;
+  core::Rng rng{31};
+  int held = 0;
+  for (int study = 0; study < studies; ++study) {
+    std::vector<Proportion> drawn;
+    for (int person = 0; person < 5; ++person) {
+      const double share = share_of_person(mean, 0.3, rng);
+      drawn.push_back({0, share < mean ? 6 : 30});
+      for (std::int64_t k = 0; k < drawn.back().trials; ++k) {
+        drawn.back().successes += rng.uniform() < share ? 1 : 0;
+      }
+    }
+    const Interval of = *mean_share(drawn)->interval;
+    held += of.low <= mean && mean <= of.high ? 1 : 0;
+  }
+  CHECK(held > 0.93 * studies);
 }
 
 TEST_CASE("a paired contrast is tested by all patterns of signs", "[analysis][participants]") {

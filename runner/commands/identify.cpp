@@ -5,16 +5,19 @@
 #include <filesystem>
 #include <memory>
 
+#include "analysis/modal/response/response_files.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/laboratory/identify/modal_report.hpp"
+#include "runner/laboratory/identify/responses/response_identification.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
 struct IdentifyOptions {
   TapQuestion question;
   std::string quantity{"acceleration"};
+  std::string response;
   std::string band;
   std::string at;
   bool wants_json{false};
@@ -53,8 +56,7 @@ void check_playback(const TapQuestion& question) {
   }
 }
 
-TapQuestion question_of(const IdentifyOptions& options) {
-  TapQuestion question = options.question;
+void check_files_and_protocol(const TapQuestion& question) {
   if (question.recordings.empty()) {
     throw core::InvalidInput{
         "identify takes at least one recording (CSV, MATLAB, universal file or WAV)"};
@@ -67,6 +69,46 @@ TapQuestion question_of(const IdentifyOptions& options) {
   if (question.protocol.empty() != question.stimulus.empty()) {
     throw core::InvalidInput{"--protocol and --stimulus go together"};
   }
+}
+
+// Whether the files are of frequency responses; all or none.
+bool are_responses(const IdentifyOptions& options) {
+  const std::vector<std::string>& files = options.question.recordings;
+  if (!options.response.empty()) {
+    return true;
+  }
+  const bool first = analysis::holds_responses(files.front());
+  for (const std::string& file : files) {
+    if (analysis::holds_responses(file) != first) {
+      throw core::InvalidInput{
+          fmt::format("{} holds frequency responses, {} recordings: identify takes one kind at a "
+                      "time",
+                      first ? files.front() : file, first ? file : files.front())};
+    }
+  }
+  return first;
+}
+
+ResponseQuestion response_question_of(const IdentifyOptions& options) {
+  const TapQuestion& asked = options.question;
+  if (!asked.columns.empty() || !asked.force_column.empty() || !asked.speeds.empty() ||
+      !asked.places.empty() || !options.at.empty() || asked.reading.rate_hz > 0.0) {
+    throw core::InvalidInput{
+        "--column, --force-column, --speeds, --places, --at and --rate are for recordings of taps, "
+        "not for frequency responses"};
+  }
+  ResponseQuestion question{asked.recordings, {}, {}, asked.protocol, asked.stimulus};
+  if (!options.response.empty()) {
+    question.kind = analysis::response_kind_from(options.response);
+  }
+  if (!options.band.empty()) {
+    question.band = band_from(options.band);
+  }
+  return question;
+}
+
+TapQuestion question_of(const IdentifyOptions& options) {
+  TapQuestion question = options.question;
   question.quantity = analysis::quantity_from(options.quantity);
   if (!options.band.empty()) {
     question.band = band_from(options.band);
@@ -102,12 +144,27 @@ void require_identified_mode(const TapIdentification& found) {
       doubtful.empty() ? "" : fmt::format(" Doubtful: {}", fmt::join(doubtful, "; ")))};
 }
 
-void run_identify(const IdentifyOptions& options) {
-  const TapQuestion question = question_of(options);
-  std::error_code error;
-  if (std::filesystem::exists(options.out, error)) {
-    throw core::InvalidInput{options.out + ": exists already (a new directory is needed)"};
+void identify_from_responses(const IdentifyOptions& options) {
+  const ResponseQuestion question = response_question_of(options);
+  const ResponseIdentification found = [&] {
+    Progress progress{"identifying"};
+    return identify_responses(question, progress);
+  }();
+  write_files(options.out, found);  // its figures show why there is nothing in it
+  if (found.agreed.empty()) {
+    throw core::InvalidInput{
+        fmt::format("{}: no mode could be identified{}{}", fmt::join(question.files, ", "),
+                    found.others.empty() ? "" : "; doubtful: ", fmt::join(found.others, "; "))};
   }
+  if (options.wants_json) {
+    fmt::print("{}\n", json_of(found));
+  } else {
+    print(found);
+  }
+}
+
+void identify_from_taps(const IdentifyOptions& options) {
+  const TapQuestion question = question_of(options);
   const TapIdentification found = [&] {
     Progress progress{"identifying"};
     return identify_taps(question, progress);
@@ -120,16 +177,33 @@ void run_identify(const IdentifyOptions& options) {
     print(found, options.wants_all ? Listing::all : Listing::modes);
   }
 }
+
+void run_identify(const IdentifyOptions& options) {
+  check_files_and_protocol(options.question);
+  std::error_code error;
+  if (std::filesystem::exists(options.out, error)) {
+    throw core::InvalidInput{options.out + ": exists already (a new directory is needed)"};
+  }
+  if (are_responses(options)) {
+    identify_from_responses(options);
+  } else {
+    identify_from_taps(options);
+  }
+}
 }  // namespace
 
 void add_identify(CommandParser& line) {
   Command command =
-      line.add("identify", "Recordings of real taps: modes, damping, Young's modulus, sinusoid");
+      line.add("identify",
+               "Recordings of real taps, or frequency responses: modes, damping, Young's modulus");
   const auto options = std::make_shared<IdentifyOptions>();
   TapQuestion& question = options->question;
   command.arguments("recordings", question.recordings,
                     "Recordings: tables (.csv, .txt, .tsv, .dat, .lvm), MATLAB (.mat), universal "
-                    "files (.uff, .unv), WAV, FLAC ...");
+                    "files (.uff, .unv), WAV, FLAC ...; or frequency responses: universal files, "
+                    "tables with frequency_hz");
+  command.one_of("--response", options->response, {"receptance", "mobility", "accelerance"},
+                 "The files are frequency responses of this kind, which they do not state");
   command.option("--out", options->out,
                  "New directory for identified.yaml, identified.json and figures", Need::required);
   command.option("--protocol", question.protocol, "Study (YAML) with a model of what was tapped");

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runner/laboratory/identify/modal_report.hpp"
+#include "runner/laboratory/identify/responses/response_identification.hpp"
 namespace tapstudy::runner {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -174,6 +175,50 @@ std::string json_of(const TapIdentification& found) {
     json["taps"].push_back(json_of(tap));
   }
   for (const analysis::RepeatedMode& mode : found.modes) {
+    json[mode.standing == analysis::Standing::agreed ? "modes" : "others"].push_back(json_of(mode));
+  }
+  return json.dump(2);
+}
+
+namespace {
+Json json_of(const analysis::ResponseMode& mode) {
+  Json json{{"frequency_hz", json_of(mode.frequency_hz)},
+            {"damping_ratio", json_of(mode.damping_ratio)},
+            {"standing", name(mode.standing)},
+            {"why", mode.why},
+            {"orders", mode.orders},
+            {"significance", mode.significance},
+            {"share", mode.share},
+            {"phase_collinearity", mode.phase_collinearity},
+            {"shape", Json::array()},
+            {"residues", Json::array()}};
+  for (const std::complex<double>& at : mode.shape) {
+    json["shape"].push_back({at.real(), at.imag()});
+  }
+  for (const std::complex<double>& residue : mode.residues) {
+    json["residues"].push_back({residue.real(), residue.imag()});
+  }
+  return json;
+}
+}  // namespace
+
+std::string json_of(const ResponseIdentification& found) {
+  const Eigen::ArrayXd& hz = found.responses.measured.frequency_hz;
+  Json json{{"schema_version", 1},
+            {"kind", name(found.responses.measured.kind)},
+            {"band_hz", {hz[0], hz[hz.size() - 1]}},
+            {"responses", Json::array()},
+            {"places", found.responses.places},
+            {"modes", Json::array()},
+            {"others", Json::array()},
+            {"others_in_words", found.others},
+            {"rayleigh", json_or_null(found.rayleigh)},
+            {"model", json_or_null(found.model)},
+            {"remarks", found.remarks}};
+  for (const analysis::ResponsePair& pair : found.responses.measured.pairs) {
+    json["responses"].push_back({{"response", pair.response}, {"reference", pair.reference}});
+  }
+  for (const analysis::ResponseMode& mode : found.responses.modes) {
     json[mode.standing == analysis::Standing::agreed ? "modes" : "others"].push_back(json_of(mode));
   }
   return json.dump(2);

@@ -116,8 +116,8 @@ void print_sinusoid(const SinusoidLaw& law) {
   }
 }
 
-void print_model(const TapIdentification& found, const ModelComparison& model) {
-  fmt::print("\nModel of '{}', material '{}':\n", found.question.stimulus, model.material_name);
+void print_model(const ModalFindings& found, const ModelComparison& model) {
+  fmt::print("\nModel of '{}', material '{}':\n", found.stimulus, model.material_name);
   if (!model.update && model.is_on_springs) {
     fmt::print("  neither Young's modulus nor its springs can be told from these modes\n");
     return;
@@ -142,8 +142,11 @@ void print_model(const TapIdentification& found, const ModelComparison& model) {
     fmt::print("  springs {:.4g} ({}) times as stiff as the protocol's\n",
                model.springs->factor.value, interval(model.springs->factor));
   }
-  fmt::print("  measured_hz  mode  model_hz   misfit after the update{}\n",
-             found.places_m.empty() ? "" : "   MAC");
+  fmt::print(
+      "  measured_hz  mode  model_hz   misfit after the update{}\n",
+      std::ranges::any_of(update.matched, [](const auto& one) { return one.assurance.has_value(); })
+          ? "   MAC"
+          : "");
   for (const analysis::MatchedMode& one : update.matched) {
     fmt::print("  {:>11.3f}  {:>4}  {:>8.3f}  {:>+7.2f} %{}\n",
                found.modes[found.agreed[one.measured]].frequency_hz.value, one.model + 1,
@@ -162,8 +165,7 @@ void print_model(const TapIdentification& found, const ModelComparison& model) {
 }
 }  // namespace
 
-void print(const TapIdentification& found, Listing listing) {
-  print_modes(found, listing);
+void print_damping_and_model(const ModalFindings& found) {
   if (found.rayleigh) {
     print_rayleigh(*found.rayleigh);
   }
@@ -178,6 +180,11 @@ void print(const TapIdentification& found, Listing listing) {
         "\nThe model holds its fixations rigidly; their stiffness is identified where they are on "
         "springs_n_per_m.\n");
   }
+}
+
+void print(const TapIdentification& found, Listing listing) {
+  print_modes(found, listing);
+  print_damping_and_model(found);
   print_taps(found);
   fmt::print("{}", found.remarks.empty() ? "" : "\n");
   for (const std::string& remark : found.remarks) {

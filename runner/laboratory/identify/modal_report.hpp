@@ -9,6 +9,8 @@ namespace tapstudy::runner {
 // for certain is summed up, or with Listing::all shown.
 enum class Listing { modes, all };
 void print(const TapIdentification& found, Listing listing);
+// The parts of this that follow from modes alone: Rayleigh's coefficients and the model.
+void print_damping_and_model(const ModalFindings& found);
 
 // The results as keys of a protocol, with intervals and remarks as comments: the whole material
 // under `materials` if a stimulus was named, else `damping` alone; under `rendering` the sinusoid
@@ -17,7 +19,7 @@ void print(const TapIdentification& found, Listing listing);
 // they are offered where a model says which mode is which: up to the last mode that was measured,
 // those between by linear interpolation over frequency, which a comment says. Where springs were
 // found, the plate's `fixations`, whole, under `plates`.
-std::string yaml_of(const TapIdentification& found);
+std::string yaml_of(const ModalFindings& found);
 
 // One of a protocol's fixations, as it is read: {region: ...}. is_of_box: of a plate, not a
 // surface.

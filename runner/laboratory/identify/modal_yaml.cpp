@@ -79,12 +79,12 @@ double interpolated(const std::vector<RatioAt>& known, double frequency_hz) {
   return below.ratio + share * (above->ratio - below.ratio);
 }
 
-const analysis::RepeatedMode& mode_of(const TapIdentification& found, std::size_t measured) {
+const analysis::RepeatedMode& mode_of(const ModalFindings& found, std::size_t measured) {
   return found.modes[found.agreed[measured]];
 }
 
 // Every listed mode's ratio beside its frequency, as comments.
-std::string ratios_found(const TapIdentification& found, const std::string& indent) {
+std::string ratios_found(const ModalFindings& found, const std::string& indent) {
   std::string text =
       fmt::format("{}# damping ratios, at the frequencies where they were found:\n", indent);
   for (const std::size_t i : found.agreed) {
@@ -104,7 +104,7 @@ struct ModelRatios {
   std::vector<double> ratios;
   std::vector<std::size_t> interpolated;  // numbers of modes, from 1
 };
-ModelRatios ratios_of_model(const TapIdentification& found, const ModelComparison& model) {
+ModelRatios ratios_of_model(const ModalFindings& found, const ModelComparison& model) {
   std::vector<RatioAt> known;
   std::size_t last = 0;
   for (const analysis::MatchedMode& one : model.update->matched) {
@@ -133,7 +133,7 @@ std::string listed(const std::vector<double>& ratios) {
 
 // Set where a model says which of its modes was measured. One that fits nearly as well with other
 // modes does not say it.
-std::optional<ModelRatios> modal(const TapIdentification& found) {
+std::optional<ModelRatios> modal(const ModalFindings& found) {
   if (!found.model || !found.model->update || found.model->update->rival_pa ||
       found.model->update->matched.empty()) {
     return std::nullopt;
@@ -156,7 +156,7 @@ std::string caution_of(const std::optional<ModelRatios>& by_mode, const std::str
 }
 
 // Precondition: at least one mode is listed.
-std::string damping_of(const TapIdentification& found, const std::string& indent) {
+std::string damping_of(const ModalFindings& found, const std::string& indent) {
   const std::string ratios = ratios_found(found, indent);
   const auto& rayleigh = found.rayleigh;
   if (!rayleigh) {
@@ -261,11 +261,9 @@ std::string elasticity_of(const ModelComparison& model) {
 }
 }  // namespace
 
-std::string yaml_of(const TapIdentification& found) {
+std::string yaml_of(const ModalFindings& found) {
   std::string text = fmt::format(
-      "# tapstudy identify: {} taps, {}, {:g} to {:g} Hz. To be pasted over the keys of the same "
-      "name.\n",
-      found.taps.size(), name(found.question.quantity), found.band.low_hz, found.band.high_hz);
+      "# tapstudy identify: {}. To be pasted over the keys of the same name.\n", found.source);
   for (const std::string& other : found.others) {
     text += fmt::format("# not listed: {}\n", other);
   }

@@ -270,21 +270,12 @@ class Identifier {
     add_remarks(tap_remarks_.sentences(impacts_));
     add_remarks(remarks_on_resolution(result_.taps));
     add_remarks(remarks_on_scatter(result_.modes));
-    std::vector<analysis::MeasuredRatio> ratios;
-    for (std::size_t i = 0; i < result_.modes.size(); ++i) {
-      const analysis::RepeatedMode& mode = result_.modes[i];
-      if (mode.standing == analysis::Standing::agreed) {
-        result_.agreed.push_back(i);
-        ratios.push_back({mode.frequency_hz.value, mode.damping_ratio.value,
-                          std::max(mode.damping_ratio.standard_error, 1e-12),
-                          mode.degrees_of_freedom});
-      }
-    }
+    result_.source =
+        fmt::format("{} taps, {}, {:g} to {:g} Hz", result_.taps.size(),
+                    name(result_.question.quantity), result_.band.low_hz, result_.band.high_hz);
+    result_.stimulus = result_.question.stimulus;
+    sum_up_modes(result_);
     result_.others = analysis::summaries_of_others(result_.modes);
-    result_.rayleigh = analysis::fit_rayleigh(ratios);
-    if (result_.agreed.empty()) {
-      result_.remarks.emplace_back("no mode was found for certain");
-    }
     result_.sinusoid = sinusoid_law(
         result_, protocol_ ? std::optional{protocol_->rendering.finger} : std::nullopt);
     if (!result_.sinusoid) {
@@ -309,12 +300,7 @@ class Identifier {
     }
     ModelComparison model = compare_with_model(*protocol_, result_.question.stimulus, measured,
                                                result_.band.high_hz, hook_);
-    if (model.is_on_springs && !model.springs) {
-      result_.remarks.emplace_back(
-          "Young's modulus and the stiffness of the springs cannot be told apart by these modes: "
-          "the "
-          "protocol's were kept (measure more modes, some of which bend the plate)");
-    }
+    add_remarks(remarks_on_springs(model));
     if (model.update) {
       add_remarks(remarks_on_shapes(*model.update, result_));
     }
@@ -328,6 +314,32 @@ class Identifier {
   core::ProgressHook hook_;
 };
 }  // namespace
+
+void sum_up_modes(ModalFindings& findings) {
+  std::vector<analysis::MeasuredRatio> ratios;
+  for (std::size_t i = 0; i < findings.modes.size(); ++i) {
+    const analysis::RepeatedMode& mode = findings.modes[i];
+    if (mode.standing == analysis::Standing::agreed) {
+      findings.agreed.push_back(i);
+      ratios.push_back({mode.frequency_hz.value, mode.damping_ratio.value,
+                        std::max(mode.damping_ratio.standard_error, 1e-12),
+                        mode.degrees_of_freedom});
+    }
+  }
+  findings.rayleigh = analysis::fit_rayleigh(ratios);
+  if (findings.agreed.empty()) {
+    findings.remarks.emplace_back("no mode was found for certain");
+  }
+}
+
+std::vector<std::string> remarks_on_springs(const ModelComparison& model) {
+  if (!model.is_on_springs || model.springs) {
+    return {};
+  }
+  return {
+      "Young's modulus and the stiffness of the springs cannot be told apart by these modes: the "
+      "protocol's were kept (measure more modes, some of which bend the plate)"};
+}
 
 TapIdentification identify_taps(const TapQuestion& question, Progress& progress) {
   return Identifier{question, progress}.identify();

@@ -63,21 +63,33 @@ struct SinusoidLaw {
   std::optional<double> amplitude_n_s_per_m;  // as the protocol's finger makes a force of it
 };
 
-struct TapIdentification {
-  TapQuestion question;
-  analysis::Band band;
-  std::vector<IdentifiedTap> taps;
+// Modes, and what a protocol can take of them, whatever was measured.
+struct ModalFindings {
+  std::string source;    // "3 taps, acceleration, 10 to 300 Hz"
+  std::string stimulus;  // of the protocol; may be empty
   std::vector<analysis::RepeatedMode> modes;
   std::vector<std::size_t> agreed;                // indices into modes: those that are listed
   std::vector<std::string> others;                // sentences: what is not listed, one a kind
   std::optional<analysis::RayleighFit> rayleigh;  // of the agreed modes
   std::optional<SinusoidLaw> sinusoid;
   std::optional<ModelComparison> model;
-  std::vector<Eigen::Vector2d> places_m;  // that were tapped; empty: not known
   std::vector<std::string> remarks;
-  double finger_kg{};                    // of the protocol; 0 without one
-  std::optional<double> loop_rate_hz{};  // likewise
+  std::optional<double> loop_rate_hz{};  // of the protocol
 };
+
+struct TapIdentification : ModalFindings {
+  TapQuestion question;
+  analysis::Band band;
+  std::vector<IdentifiedTap> taps;
+  std::vector<Eigen::Vector2d> places_m;  // that were tapped; empty: not known
+  double finger_kg{};                     // of the protocol; 0 without one
+};
+
+// Sets `agreed` and `rayleigh` by the modes.
+void sum_up_modes(ModalFindings& findings);
+// What to say where a model on springs has modes that tell neither them nor its modulus; may be
+// empty.
+std::vector<std::string> remarks_on_springs(const ModelComparison& model);
 
 // Reads, finds the taps, identifies modes, damping, sinusoid and Young's modulus; intervals include
 // the rate's error. Throws

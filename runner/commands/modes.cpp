@@ -8,6 +8,7 @@
 #include "analysis/report/figures/colour_map.hpp"
 #include "core/error.hpp"
 #include "core/files/output_files.hpp"
+#include "core/model/universal_file.hpp"
 #include "core/model/vtu_file.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "runner/commands/check_models.hpp"
@@ -23,6 +24,7 @@ struct ModesOptions {
   bool wants_json{false};
   std::string mesh_out;
   std::string vtu;
+  std::string uff;
   std::string figure;
   std::vector<std::string> settings;
 };
@@ -188,7 +190,7 @@ std::vector<std::string> outputs(const ModesOptions& options) {
   if (!options.mesh_out.empty()) {
     files = {options.mesh_out + ".node", options.mesh_out + ".ele"};
   }
-  for (const std::string& file : {options.vtu, options.figure}) {
+  for (const std::string& file : {options.vtu, options.uff, options.figure}) {
     if (!file.empty()) {
       files.push_back(file);
     }
@@ -214,9 +216,10 @@ void run_modes(const ModesOptions& options) {
   const protocols::PresentedStimulus stimulus =
       member_set_to(options.settings, protocol, protocol.stimulus(options.stimulus));
   const core::PlateSpec spec = plate_spec(protocol, stimulus);
-  if (stimulus.technique->needs_beam() && !(options.mesh_out.empty() && options.vtu.empty())) {
+  if (stimulus.technique->needs_beam() &&
+      !(options.mesh_out.empty() && options.vtu.empty() && options.uff.empty())) {
     throw core::InvalidInput{fmt::format(
-        "--mesh-out, --vtu: stimulus '{}' is a beam, which has no mesh", options.stimulus)};
+        "--mesh-out, --vtu, --uff: stimulus '{}' is a beam, which has no mesh", options.stimulus)};
   }
   for (const std::string& file : outputs(options)) {
     core::check_is_new(file);
@@ -232,6 +235,10 @@ void run_modes(const ModesOptions& options) {
   }
   if (!options.vtu.empty()) {
     core::write_vtu(plate.body, plate.modal, spec.material.density_kg_per_m3, options.vtu);
+  }
+  if (!options.uff.empty()) {
+    core::write_universal_file(plate.body, plate.modal, spec.material.density_kg_per_m3,
+                               options.uff);
   }
   if (!options.figure.empty()) {
     draw_modes(options, spec.shape, plate.modal);
@@ -254,6 +261,8 @@ void add_modes(CommandParser& line) {
   command.flag("--json", options->wants_json, "Output as JSON");
   command.option("--mesh-out", options->mesh_out, "Write the mesh as PREFIX.node, PREFIX.ele");
   command.file("--vtu", options->vtu, ".vtu", "Write body and mode shapes for ParaView (.vtu)");
+  command.file("--uff", options->uff, ".uff",
+               "Write nodes, elements and mode shapes as a universal file (.uff)");
   command.file("--figure", options->figure, ".svg", "Draw the plate's modes from above (.svg)");
   command.on_run([options] { run_modes(*options); });
 }

@@ -234,11 +234,10 @@ std::string doubt_about(const ResponseMode& mode, const ResponseModes& all) {
   if (at_hz - half_hz < low_hz || at_hz + half_hz > high_hz) {
     return "half of its peak lies outside the band";
   }
-  const auto* const above = std::upper_bound(hz.data(), hz.data() + hz.size(), at_hz);
-  const double step_hz =
-      above == hz.data() || above == hz.data() + hz.size() ? hz[1] - hz[0] : *above - *(above - 1);
-  if (bandwidth_of(mode) < 0.5 * step_hz) {
-    return fmt::format("its peak is narrower than half of the step of {:g} Hz", step_hz);
+  const double step_hz = step_at(at_hz, hz);
+  constexpr double narrowest = 0.1;
+  if (bandwidth_of(mode) < narrowest * step_hz) {
+    return fmt::format("its peak is narrower than a tenth of the step of {:g} Hz", step_hz);
   }
   for (const ResponseMode& other : all.modes) {
     if (is_remainder(mode, other)) {

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/algebra/blas.hpp"
+
 namespace tapstudy::analysis {
 namespace {
 using Complex = std::complex<double>;
-constexpr Complex j{0.0, 1.0};
+constexpr Complex imaginary_unit{0.0, 1.0};
 
 void set_column(const Eigen::ArrayXcd& values, Eigen::Index column, Eigen::MatrixXd& all) {
   all.col(column).head(values.size()) = values.real().matrix();
@@ -22,7 +24,8 @@ ModalBasis modal_basis(const Eigen::ArrayXd& frequency_hz, ResponseKind kind,
   basis.unit_rad_per_s = 2.0 * std::numbers::pi * frequency_hz[lines - 1];
   basis.columns.resize(2 * lines, 2 * modes + residual_columns);
   basis.slopes.resize(2 * lines, 2 * modes);
-  const Eigen::ArrayXcd s = j * (frequency_hz / frequency_hz[lines - 1]).cast<Complex>();
+  const Eigen::ArrayXcd s =
+      imaginary_unit * (frequency_hz / frequency_hz[lines - 1]).cast<Complex>();
   const Eigen::ArrayXcd derivative = kind == ResponseKind::receptance
                                          ? Eigen::ArrayXcd::Ones(lines).eval()
                                          : (kind == ResponseKind::mobility ? s : (s * s).eval());
@@ -31,55 +34,70 @@ ModalBasis modal_basis(const Eigen::ArrayXd& frequency_hz, ResponseKind kind,
     const Eigen::ArrayXcd above = (s - p).inverse();
     const Eigen::ArrayXcd below = (s - std::conj(p)).inverse();
     set_column(derivative * (above + below), 2 * mode, basis.columns);
-    set_column(derivative * j * (above - below), 2 * mode + 1, basis.columns);
+    set_column(derivative * imaginary_unit * (above - below), 2 * mode + 1, basis.columns);
     set_column(derivative * (above * above + below * below), 2 * mode, basis.slopes);
-    set_column(derivative * j * (above * above - below * below), 2 * mode + 1, basis.slopes);
+    set_column(derivative * imaginary_unit * (above * above - below * below), 2 * mode + 1,
+               basis.slopes);
   }
   const Eigen::ArrayXcd lower = derivative / (s * s);
   set_column(derivative, 2 * modes, basis.columns);
-  set_column(derivative * j, 2 * modes + 1, basis.columns);
+  set_column(derivative * imaginary_unit, 2 * modes + 1, basis.columns);
   set_column(lower, 2 * modes + 2, basis.columns);
-  set_column(lower * j, 2 * modes + 3, basis.columns);
+  set_column(lower * imaginary_unit, 2 * modes + 3, basis.columns);
   return basis;
 }
 
-OrthonormalBasis::OrthonormalBasis(const Eigen::MatrixXd& A)
-    : Q{A}, R{Eigen::MatrixXd::Zero(A.cols(), A.cols())} {
-  constexpr double dependent = 1e-12;
-  for (Eigen::Index k = 0; k < Q.cols(); ++k) {
-    const double whole = Q.col(k).norm();
-    for (int round = 0; round < 2; ++round) {
-      for (Eigen::Index i = 0; i < k; ++i) {
-        const double part = Q.col(i).dot(Q.col(k));
-        R(i, k) += part;
-        Q.col(k) -= part * Q.col(i);
-      }
+namespace {
+// The upper triangular R with R' R = G; rows of what depends on the columns before are 0.
+Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& G) {
+  constexpr double dependent = 1e-14;
+  const Eigen::Index n = G.rows();
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double left = G(k, k) - R.col(k).head(k).squaredNorm();
+    if (!(left > dependent * G(k, k))) {
+      continue;
     }
-    const double left = Q.col(k).norm();
-    if (left > dependent * whole) {
-      R(k, k) = left;
-      Q.col(k) /= left;
-    } else {
-      Q.col(k).setZero();
+    R(k, k) = std::sqrt(left);
+    const Eigen::Index after = n - k - 1;
+    R.row(k).tail(after) =
+        (G.row(k).tail(after) - R.col(k).head(k).transpose() * R.block(0, k + 1, k, after)) /
+        R(k, k);
+  }
+  return R;
+}
+
+// R^-1, with 0 for what depends on others.
+Eigen::MatrixXd inverse_of_upper(const Eigen::MatrixXd& R) {
+  const Eigen::Index n = R.rows();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index row = n - 1; row >= 0; --row) {
+    if (R(row, row) == 0.0) {
+      continue;
     }
+    const Eigen::Index after = n - row - 1;
+    inverse(row, row) = 1.0;
+    inverse.row(row).tail(after) =
+        -R.row(row).tail(after) * inverse.bottomRightCorner(after, after);
+    inverse.row(row) /= R(row, row);
+  }
+  return inverse;
+}
+}  // namespace
+
+OrthonormalBasis::OrthonormalBasis(const Eigen::MatrixXd& A) {
+  const Eigen::VectorXd sizes = A.colwise().norm().cwiseMax(1e-300);
+  Q = A * sizes.cwiseInverse().asDiagonal();
+  R = sizes.asDiagonal();
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds; ++round) {
+    const Eigen::MatrixXd factor = cholesky_factor(core::inner_products(Q, Q));
+    Q = core::combination(Q, inverse_of_upper(factor));
+    R = factor * R;
   }
 }
 
 Eigen::MatrixXd OrthonormalBasis::inverse_of_R() const {
-  const Eigen::Index n = R.rows();
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index column = 0; column < n; ++column) {
-    for (Eigen::Index row = column; row >= 0; --row) {
-      if (R(row, row) == 0.0) {
-        continue;
-      }
-      double sum = row == column ? 1.0 : 0.0;
-      for (Eigen::Index k = row + 1; k <= column; ++k) {
-        sum -= R(row, k) * inverse(k, column);
-      }
-      inverse(row, column) = sum / R(row, row);
-    }
-  }
-  return inverse;
+  return inverse_of_upper(R);
 }
 }  // namespace tapstudy::analysis

@@ -24,7 +24,8 @@ inline constexpr Eigen::Index residual_columns = 4;
 ModalBasis modal_basis(const Eigen::ArrayXd& frequency_hz, ResponseKind kind,
                        const std::vector<std::complex<double>>& poles);
 
-// Q R = A by modified Gram-Schmidt, twice: columns that depend on those before are 0 in Q.
+// Q R = A by Cholesky's factor of A' A, twice (Yamamoto et al. 2015), of columns scaled to one
+// length: those that depend on the ones before are 0 in Q.
 struct OrthonormalBasis {
   explicit OrthonormalBasis(const Eigen::MatrixXd& A);
   Eigen::MatrixXd Q;

@@ -8,6 +8,7 @@
 
 #include "analysis/modal/decay/decay_fit.hpp"
 #include "analysis/modal/response/modal_basis.hpp"
+#include "core/algebra/blas.hpp"
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -23,8 +24,10 @@ class Projection {
       : poles_{std::move(poles)},
         basis_{modal_basis(responses.frequency_hz, responses.kind, poles_)},
         orthonormal_{basis_.columns},
-        explained_{orthonormal_.Q.transpose() * measured},
-        residual_{measured - orthonormal_.Q * explained_} {}
+        explained_{core::inner_products(orthonormal_.Q, measured)},
+        residual_{measured} {
+    core::subtract_combination(orthonormal_.Q, explained_, residual_);
+  }
 
   const std::vector<Complex>& poles() const { return poles_; }
   const ModalBasis& basis() const { return basis_; }
@@ -43,7 +46,10 @@ class Projection {
   }
   // What of the slopes the columns do not explain.
   Eigen::MatrixXd projected_slopes() const {
-    return basis_.slopes - orthonormal_.Q * (orthonormal_.Q.transpose() * basis_.slopes);
+    Eigen::MatrixXd slopes = basis_.slopes;
+    core::subtract_combination(orthonormal_.Q, core::inner_products(orthonormal_.Q, slopes),
+                               slopes);
+    return slopes;
   }
 
  private:
@@ -73,8 +79,8 @@ struct Step {
 Step step_of(Projection& at, const Eigen::VectorXd& weights) {
   const Eigen::MatrixXd slopes = at.projected_slopes();
   const Eigen::MatrixXd coefficients = at.coefficients();
-  const Eigen::MatrixXd gram = slopes.transpose() * slopes;
-  const Eigen::MatrixXd towards = slopes.transpose() * at.residual();
+  const Eigen::MatrixXd gram = core::inner_products(slopes, slopes);
+  const Eigen::MatrixXd towards = core::inner_products(slopes, at.residual());
   const auto modes = std::ssize(at.poles());
   Step step{Eigen::MatrixXd::Zero(2 * modes, 2 * modes), Eigen::VectorXd::Zero(2 * modes)};
   for (Eigen::Index response = 0; response < weights.size(); ++response) {
@@ -113,7 +119,7 @@ std::vector<Complex> moved(const Projection& at, const Eigen::VectorXd& step) {
 Projection descended(const FrequencyResponses& responses, const Eigen::MatrixXd& measured,
                      Projection at, const Eigen::VectorXd& weights, double settled_share) {
   constexpr int most_steps = 60;
-  constexpr double most_damping = 1e6;
+  constexpr double most_damping = 1e4;
   double damping = 1e-4;
   for (int i = 0; i < most_steps && damping < most_damping; ++i) {
     const Step step = step_of(at, weights);
@@ -124,7 +130,7 @@ Projection descended(const FrequencyResponses& responses, const Eigen::MatrixXd&
       const double after = next.weighted_squares(weights);
       if (after < before) {
         at = std::move(next);
-        damping = std::max(1e-12, 0.1 * damping);
+        damping = std::max(1e-8, 0.1 * damping);
         if (before - after <= settled_share * before) {
           return at;
         }
@@ -313,11 +319,11 @@ ResidueFit fit_residues(const FrequencyResponses& responses, std::vector<Complex
   const bool is_rough = fitting == Fitting::rough;
   Eigen::VectorXd weights = measured.colwise().squaredNorm().transpose().cwiseInverse();
   Projection at = descended(responses, measured, {responses, measured, std::move(poles)}, weights,
-                            is_rough ? 1e-3 : 1e-6);
+                            is_rough ? 1e-2 : 1e-4);
   constexpr int reweighted = 2;
   for (int round = 0; round < (is_rough ? 0 : reweighted); ++round) {
     weights = noise_variance(at.residual(), measured, unknowns).cwiseInverse();
-    at = descended(responses, measured, std::move(at), weights, round == 0 ? 1e-6 : 1e-10);
+    at = descended(responses, measured, std::move(at), weights, round == 0 ? 1e-4 : 1e-8);
   }
   ResidueFit fit;
   Evaluation evaluation{responses, measured, at};

@@ -59,23 +59,46 @@ bool is_lost(const std::vector<Complex>& poles, std::size_t at, const Eigen::Arr
   return false;
 }
 
-// Removes what is lost, else the weakest one below the limit, and with it all far below. Whether
-// there was any.
-bool drop_weak(const FrequencyResponses& responses, const ResidueFit& fit, Candidates& all) {
-  constexpr double far_below = 0.2;
-  all.poles = fit.poles;
+// Whether two poles share lines, so that one may be significant once the other is gone.
+bool do_overlap(const Complex& one, const Complex& other) {
+  constexpr double bandwidths = 3.0;
+  return std::abs(one.imag() - other.imag()) <
+         2.0 * bandwidths * (std::abs(one.real()) + std::abs(other.real()));
+}
+
+// Indices of what is lost, and of the weaker half of what is below the limit, of overlapping ones
+// the weakest.
+std::vector<std::size_t> dropped_from(const FrequencyResponses& responses, const ResidueFit& fit) {
   const double limit = significance_of_noise(responses.values.cols());
-  const auto weakest = std::ranges::min_element(fit.significance) - fit.significance.begin();
-  bool is_any = false;
-  for (std::size_t i = fit.poles.size(); i-- > 0;) {
-    const bool is_weak = fit.significance[i] < far_below * limit ||
-                         (static_cast<std::ptrdiff_t>(i) == weakest && fit.significance[i] < limit);
-    if (is_lost(fit.poles, i, responses.frequency_hz) || is_weak) {
-      all.erase(i);
-      is_any = true;
+  std::vector<std::size_t> dropped;
+  std::vector<std::size_t> weak;
+  for (std::size_t i = 0; i < fit.poles.size(); ++i) {
+    if (is_lost(fit.poles, i, responses.frequency_hz)) {
+      dropped.push_back(i);
+    } else if (fit.significance[i] < limit) {
+      weak.push_back(i);
     }
   }
-  return is_any;
+  std::ranges::sort(weak, {}, [&](std::size_t i) { return fit.significance[i]; });
+  weak.resize((weak.size() + 1) / 2);
+  for (const std::size_t i : weak) {
+    if (std::ranges::none_of(
+            dropped, [&](std::size_t gone) { return do_overlap(fit.poles[gone], fit.poles[i]); })) {
+      dropped.push_back(i);
+    }
+  }
+  return dropped;
+}
+
+// Whether there was any.
+bool drop_weak(const FrequencyResponses& responses, const ResidueFit& fit, Candidates& all) {
+  all.poles = fit.poles;
+  std::vector<std::size_t> dropped = dropped_from(responses, fit);
+  std::ranges::sort(dropped, std::ranges::greater{});
+  for (const std::size_t i : dropped) {
+    all.erase(i);
+  }
+  return !dropped.empty();
 }
 
 Candidates candidates_of(const std::vector<SettledPole>& settled) {
@@ -162,21 +185,24 @@ std::optional<Candidates> with_close_modes(const FrequencyResponses& responses,
 void look_for_close_modes(const FrequencyResponses& responses, const ResponseGrid& grid,
                           Candidates& candidates, ResidueFit& fit) {
   const std::vector<Complex> first = candidates.poles;
+  Candidates all = candidates;
   for (const Complex& pole : first) {
-    const auto at = std::ranges::find(candidates.poles, pole);
-    if (at == candidates.poles.end()) {
+    const auto at = std::ranges::find(all.poles, pole);
+    if (at == all.poles.end()) {
       continue;  // one of close modes that were found meanwhile
     }
-    auto more = with_close_modes(responses, grid, candidates,
-                                 static_cast<std::size_t>(at - candidates.poles.begin()));
-    if (!more) {
-      continue;
+    if (auto more = with_close_modes(responses, grid, all,
+                                     static_cast<std::size_t>(at - all.poles.begin()))) {
+      all = std::move(*more);
     }
-    ResidueFit of_more = selected(responses, *more);
-    if (of_more.poles.size() > fit.poles.size()) {
-      candidates = std::move(*more);
-      fit = std::move(of_more);
-    }
+  }
+  if (all.poles == first) {
+    return;
+  }
+  ResidueFit of_all = selected(responses, all);
+  if (of_all.poles.size() > fit.poles.size()) {
+    candidates = std::move(all);
+    fit = std::move(of_all);
   }
 }
 

@@ -221,27 +221,57 @@ std::vector<Eigen::Index> alone(const TetMesh& mesh, const std::vector<Eigen::In
   return left;
 }
 
+// What of a mesh springs hold: surface triangles, and nodes that none of these has.
+struct Foundation {
+  std::vector<Eigen::Index> triangles;
+  std::vector<Eigen::Index> single;
+  double share_of_single{};  // of the stiffness
+};
+
+Foundation foundation_of(const TetMesh& mesh, const std::vector<Eigen::Index>& nodes) {
+  Foundation foundation{triangles_between(mesh, nodes), {}, 0.0};
+  foundation.single = alone(mesh, nodes, foundation.triangles);
+  foundation.share_of_single =
+      static_cast<double>(foundation.single.size()) / static_cast<double>(nodes.size());
+  return foundation;
+}
+
+std::vector<Eigen::Index> every(std::size_t step, const std::vector<Eigen::Index>& all) {
+  std::vector<Eigen::Index> some;
+  for (std::size_t i = 0; i < all.size(); i += step) {
+    some.push_back(all[i]);
+  }
+  return some;
+}
+
+// Of one with more unknowns than these, a part that lies all over it and has no more.
+Foundation thinned(const Foundation& whole, const TetMesh& mesh, std::size_t most_unknowns) {
+  const auto of_triangle = static_cast<std::size_t>(mesh.surface.cols());
+  const std::size_t unknowns = of_triangle * whole.triangles.size() + whole.single.size();
+  const std::size_t step = (unknowns + most_unknowns - 1) / most_unknowns;
+  return {every(step, whole.triangles), every(step, whole.single), whole.share_of_single};
+}
+
 // How a stiffness of 1, along any axis, is shared out over pairs of a mesh's unknowns.
-SparseMatrix shares_of_nodes(const TetMesh& mesh, const std::vector<Eigen::Index>& nodes) {
-  const std::vector<Eigen::Index> triangles = triangles_between(mesh, nodes);
-  const std::vector<Eigen::Index> single = alone(mesh, nodes, triangles);
-  const double of_node = 1.0 / static_cast<double>(nodes.size());
+SparseMatrix shares_of(const Foundation& foundation, const TetMesh& mesh) {
   double whole_m2 = 0.0;
-  for (const Eigen::Index triangle : triangles) {
+  for (const Eigen::Index triangle : foundation.triangles) {
     whole_m2 += triangle_area_m2(mesh, triangle);
   }
   std::vector<Eigen::Triplet<double>> entries;
-  for (const Eigen::Index triangle : triangles) {
-    const Eigen::MatrixXd shares = (1.0 - of_node * static_cast<double>(single.size())) / whole_m2 *
-                                   products_m2(mesh, triangle);
+  for (const Eigen::Index triangle : foundation.triangles) {
+    const Eigen::MatrixXd shares =
+        (1.0 - foundation.share_of_single) / whole_m2 * products_m2(mesh, triangle);
     for (Eigen::Index i = 0; i < shares.rows(); ++i) {
       for (Eigen::Index j = 0; j < shares.cols(); ++j) {
         entries.emplace_back(mesh.surface(triangle, i), mesh.surface(triangle, j), shares(i, j));
       }
     }
   }
-  for (const Eigen::Index node : single) {
-    entries.emplace_back(static_cast<int>(node), static_cast<int>(node), of_node);
+  for (const Eigen::Index node : foundation.single) {
+    entries.emplace_back(
+        static_cast<int>(node), static_cast<int>(node),
+        foundation.share_of_single / static_cast<double>(foundation.single.size()));
   }
   const auto size = static_cast<int>(mesh.nodes_m.rows());
   SparseMatrix shares(size, size);
@@ -264,19 +294,12 @@ LinearFields::Moments inverse_of_told(const LinearFields::Moments& moments) {
 }
 
 // K becomes K + G' (S - S0) G, G taking from displacements their linear part as K weighs them, S0
-// and S being the moments of K and of the region itself. What is orthogonal to it by K stays, so
-// that K holds the same nodes; for that, S has a little of S0 where the region has no extent.
-void correct_linear_part(const SurfaceRegion& region, const TetMesh& mesh, SparseMatrix& shares) {
-  constexpr double rounding = 1e-9;
-  constexpr double little = 1e-3;
-  constexpr std::size_t most_nodes = 1500;  // their pairs are 50 MB; so many follow the region well
-  const LinearFields fields{mesh, region.nodes};
-  const auto wanted = RegionMoments{mesh, region, fields}.means();
-  const Eigen::MatrixXd weighed = shares * fields.at_nodes();
-  const LinearFields::Moments held = fields.at_nodes().transpose() * weighed;
-  if (!wanted || region.nodes.size() > most_nodes || (*wanted - held).norm() < rounding) {
-    return;
-  }
+// and S being the moments of K and those wanted. What is orthogonal to it by K stays, so that K
+// holds the same nodes. It joins all pairs of them.
+void correct_linear_part(const Eigen::MatrixXd& at_nodes, const LinearFields::Moments& wanted,
+                         SparseMatrix& shares) {
+  const Eigen::MatrixXd weighed = shares * at_nodes;
+  const LinearFields::Moments held = at_nodes.transpose() * weighed;
   const Eigen::MatrixXd linear_part = weighed * inverse_of_told(held);
   std::vector<int> involved;
   for (int node = 0; node < static_cast<int>(linear_part.rows()); ++node) {
@@ -285,8 +308,7 @@ void correct_linear_part(const SurfaceRegion& region, const TetMesh& mesh, Spars
     }
   }
   const Eigen::MatrixXd of_involved = linear_part(involved, Eigen::all);
-  const LinearFields::Moments change = (*wanted - held) / (1.0 + little);
-  const Eigen::MatrixXd added = of_involved * change * of_involved.transpose();
+  const Eigen::MatrixXd added = of_involved * (wanted - held) * of_involved.transpose();
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t j = 0; j < involved.size(); ++j) {
     for (std::size_t i = 0; i < involved.size(); ++i) {
@@ -297,6 +319,49 @@ void correct_linear_part(const SurfaceRegion& region, const TetMesh& mesh, Spars
   SparseMatrix correction(shares.rows(), shares.cols());
   correction.setFromTriplets(entries.begin(), entries.end());
   shares += correction;
+}
+
+constexpr double little = 1e-3;
+
+// The part of a foundation's stiffness that a thinned one has to take over, so that the rest of it
+// has clearly less than the wanted moments along every linear field.
+double share_taken_over(const LinearFields::Moments& wanted, const LinearFields::Moments& held) {
+  constexpr double rounding = 1e-9;
+  for (const double share : {0.01, 0.03, 0.1, 0.3, 0.9}) {
+    const auto left = symmetric_eigenpairs(wanted - (1.0 - 0.5 * share) * held);
+    if (left.values.minCoeff() > -rounding) {
+      return share;
+    }
+  }
+  return 1.0 - 0.5 * little;
+}
+
+// The foundation of a region's nodes, corrected such that its moments are those of the region
+// itself, but for a little of its own where the region has no extent, so that it holds the same
+// nodes. The pairs of many nodes would fill K: there a thinned foundation takes over a part of the
+// stiffness, and is corrected for both.
+SparseMatrix corrected_shares(const SurfaceRegion& region, const TetMesh& mesh) {
+  constexpr double rounding = 1e-9;
+  constexpr std::size_t most_in_pairs = 1500;  // 50 MB
+  constexpr std::size_t thinned_to = 300;      // whose pairs cost little beside the other nodes
+  const LinearFields fields{mesh, region.nodes};
+  const Foundation foundation = foundation_of(mesh, region.nodes);
+  SparseMatrix shares = shares_of(foundation, mesh);
+  const Eigen::MatrixXd at_nodes = fields.at_nodes();
+  const LinearFields::Moments held = at_nodes.transpose() * (shares * at_nodes);
+  const auto of_region = RegionMoments{mesh, region, fields}.means();
+  if (!of_region || (*of_region - held).norm() < rounding) {
+    return shares;
+  }
+  const LinearFields::Moments wanted = held + (*of_region - held) / (1.0 + little);
+  if (region.nodes.size() <= most_in_pairs) {
+    correct_linear_part(at_nodes, wanted, shares);
+    return shares;
+  }
+  const double taken_over = share_taken_over(wanted, held);
+  SparseMatrix part = taken_over * shares_of(thinned(foundation, mesh, thinned_to), mesh);
+  correct_linear_part(at_nodes, wanted - (1.0 - taken_over) * held, part);
+  return (1.0 - taken_over) * shares + part;
 }
 
 // Of the lower triangle, along each axis.
@@ -320,9 +385,7 @@ void add_springs(const TetMesh& mesh, const std::vector<SpringSupport>& supports
                  const FreeDofs& dofs, Eigen::SparseMatrix<double>& K) {
   std::vector<Eigen::Triplet<double>> entries;
   for (const SpringSupport& support : supports) {
-    SparseMatrix shares = shares_of_nodes(mesh, support.region.nodes);
-    correct_linear_part(support.region, mesh, shares);
-    add_axes(shares, support.stiffness_n_per_m, dofs, entries);
+    add_axes(corrected_shares(support.region, mesh), support.stiffness_n_per_m, dofs, entries);
   }
   if (!entries.empty()) {
     SparseMatrix springs(K.rows(), K.cols());

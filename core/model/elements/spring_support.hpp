@@ -40,7 +40,7 @@ struct SpringSupport {
 // elastic foundation (Winkler 1867) under the triangles between its nodes, and single springs at
 // nodes that no such triangle has. To motions that do not deform the region they are the foundation
 // of its whole surface, of k / A per area: their sum is k, and they resist turning alike, on any
-// mesh.
+// mesh, of few or many nodes.
 void add_springs(const TetMesh& mesh, const std::vector<SpringSupport>& supports,
                  const FreeDofs& dofs, Eigen::SparseMatrix<double>& K);
 }  // namespace tapstudy::core

@@ -227,6 +227,49 @@ TEST_CASE("a block on a soft disc rocks as on the disc itself, on any mesh", "[c
   CHECK(built.modal.frequency_hz[2] == Approx(hz(k, mass_kg)).epsilon(1e-3));
 }
 
+// So fine that the region, whose triangles end within its rim, has thousands of nodes.
+namespace {
+core::PlateSpec sheet_with(const core::Fixation& fixation) {
+  core::PlateSpec spec = block(2, 1.5e-7);
+  spec.shape = core::Box{{size_m.x(), size_m.y(), 0.005}};
+  spec.fixations = {fixation};
+  return spec;
+}
+core::Fixation wide_disc() {
+  core::Fixation disc;
+  disc.shape = core::RegionShape::disc;
+  disc.face = core::Face::through;
+  disc.radius_m = 0.09;
+  return disc;
+}
+}  // namespace
+
+TEST_CASE("a region of thousands of nodes is the disc itself on soft springs, and clamped on rigid",
+          "[core][model]") {
+  const double k = 2e3;
+  core::Fixation pad = wide_disc();
+  pad.springs_n_per_m = core::Vec3{0.0, 0.0, k};
+  const core::PlateModel soft = core::build_plate_model(sheet_with(pad));
+  const double mass_kg = 7800.0 * size_m.x() * size_m.y() * 0.005;
+  const auto rocking_hz = [&](double edge_m) {
+    return hz(k * pad.radius_m * pad.radius_m / 4.0,
+              mass_kg * (edge_m * edge_m + 0.005 * 0.005) / 12.0);
+  };
+  REQUIRE(soft.modal.frequency_hz.size() == 3);
+  CHECK(soft.modal.frequency_hz[0] == Approx(rocking_hz(size_m.x())).epsilon(2e-3));
+  CHECK(soft.modal.frequency_hz[1] == Approx(rocking_hz(size_m.y())).epsilon(2e-3));
+  CHECK(soft.modal.frequency_hz[2] == Approx(hz(k, mass_kg)).epsilon(1e-3));
+  core::PlateSpec spec = sheet_with(wide_disc());
+  spec.band_limit_hz = 800.0;
+  const Eigen::ArrayXd held_hz = core::build_plate_model(spec).modal.frequency_hz;
+  REQUIRE(held_hz.size() >= 2);
+  pad.springs_n_per_m = core::Vec3::Constant(1e16);
+  spec.fixations = {pad};
+  const Eigen::ArrayXd sprung_hz = core::build_plate_model(spec).modal.frequency_hz;
+  REQUIRE(sprung_hz.size() == held_hz.size());
+  CHECK((sprung_hz / held_hz - 1.0).abs().maxCoeff() < 1e-4);
+}
+
 TEST_CASE("springs lower every frequency below that of the constraint that they become in the end",
           "[core][model][slow]") {
   core::PlateSpec spec = block(2, 2e-5);

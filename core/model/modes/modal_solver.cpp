@@ -25,8 +25,9 @@ constexpr double accepted_residual = 1e-6;
 constexpr double max_residual = 1e-2;
 // Multiple of the rounding unit allowed for a solve and the subsequent products.
 constexpr double rounding_steps = 8.0;
-// Up to this size a dense solve is cheap, and the problem is too small for Lanczos.
-constexpr Eigen::Index dense_size = 96;
+// Up to this size a dense solve takes milliseconds, and a basis for Lanczos (block_lanczos.cpp) may
+// take up all of the space, in which nothing converges.
+constexpr Eigen::Index dense_size = 240;
 constexpr int max_modes = 1000;
 constexpr int max_refinements = 4;
 

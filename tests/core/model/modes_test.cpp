@@ -135,6 +135,22 @@ TEST_CASE("a body of a few nodes is solved as well", "[core][model]") {
   CHECK(core::build_plate_model(cube).modal.frequency_hz.size() > 0);
 }
 
+TEST_CASE("a body of some dozens of nodes has its modes in any band", "[core][model]") {
+  core::PlateSpec block = testing::paper_plate(0, testing::mdf());
+  block.shape = core::Box{{0.3, 0.2, 0.05}};
+  block.mesh.size.max_tet_volume_m3 = 1.0;
+  const StiffnessAndMass matrices = assembled(block);
+  REQUIRE(matrices.K.rows() == 99);  // too many for the least basis, too few for a large one
+  const Eigen::VectorXd eigenvalues = all_eigenvalues(matrices);
+  for (const double hz : {3000.0, 4000.0, 5000.0, 6000.0, 8000.0, 10000.0, 13000.0}) {
+    CAPTURE(hz);
+    const auto below = (eigenvalues.array() < std::pow(2.0 * M_PI * hz, 2)).count();
+    const core::Modes modes = core::solve_modes(matrices, hz);
+    REQUIRE(modes.omega_rad_s.size() == below - 6);
+    CHECK(modes.omega_rad_s.square().isApprox(eigenvalues.segment(6, below - 6).array(), 1e-9));
+  }
+}
+
 TEST_CASE("only motions that nothing holds are of the rigid body, however soft the body",
           "[core][model]") {
   core::PlateSpec plate = testing::paper_plate(4, testing::mdf());

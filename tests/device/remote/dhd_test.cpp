@@ -1,9 +1,9 @@
 #include "device/remote/remote_hand.hpp"
+#include "support/bridges/rogue_sender.hpp"
 #include "support/catch.hpp"
 #include "support/dhd/stand_in.hpp"
 #include "support/example_bridge.hpp"
 #include "support/mapped_stand_in.hpp"
-#include "support/rogue_sender.hpp"
 using namespace tapstudy;
 using core::TickFault;
 using core::Vec3;

@@ -22,10 +22,10 @@
 #include "core/random/rng.hpp"
 #include "device/hand/prescribed_hand.hpp"
 #include "device/remote/packets.hpp"
+#include "support/bridges/rogue_sender.hpp"
 #include "support/catch.hpp"
 #include "support/example_bridge.hpp"
 #include "support/remote_program.hpp"
-#include "support/rogue_sender.hpp"
 #include "support/staged_loop.hpp"
 using namespace tapstudy;
 using core::TickFault;

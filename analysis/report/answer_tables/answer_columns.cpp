@@ -205,7 +205,7 @@ std::string described_column(const std::vector<std::string>& header, std::size_t
 }
 
 namespace {
-constexpr std::array weights{"n", "freq", "frequency", "count", "counts", "weight", "weights"};
+constexpr std::array weight_names{"n", "freq", "frequency", "count", "counts", "weight", "weights"};
 
 // What is noted beside answers under the name of what was asked: key_resp.corr beside
 // key_resp.keys, Plate.ACC beside Plate.RESP.
@@ -226,7 +226,8 @@ void find_what_rows_say(const Header& header, const AnswerColumns& chosen,
                         AnswerPlaces& places) {
   if (!places.is_own_export || !chosen.weight.empty()) {
     places.weight =
-        find(header, {"--weights", chosen.weight, {weights.begin(), weights.end()}, true}, where);
+        find(header, {"--weights", chosen.weight, {weight_names.begin(), weight_names.end()}, true},
+             where);
   }
   const std::vector<std::string> beside = names_beside(header[places.response]);
   Names correct{beside.begin(), beside.end()};

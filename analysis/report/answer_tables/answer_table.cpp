@@ -32,8 +32,8 @@ void check_differ(const std::set<std::string>& names, const std::string& file) {
     const auto [other, is_new] = known.emplace(as_read(name), name);
     if (!is_new) {
       throw core::InvalidInput{
-          fmt::format("{}: '{}' and '{}' read alike (they differ in case, spaces, zeros before a "
-                      "number or how letters are composed): --merge-alike makes them one",
+          fmt::format("{}: '{}' and '{}' read alike (they differ in case, spaces, dashes, zeros of "
+                      "numbers or how letters are composed): --merge-alike makes them one",
                       file, other->second, name)};
     }
   }
@@ -124,7 +124,8 @@ class AnswerReader {
     table.has_times |= places_.time.has_value();
   }
   OtherColumns other_columns() const {
-    OtherColumns other{header(), {}, places_.weight ? header()[*places_.weight] : ""};
+    OtherColumns other{
+        header(), {}, places_.weight ? header()[*places_.weight] : "", header()[places_.response]};
     std::set<std::optional<std::size_t>> known{places_.stimulus,    places_.response,
                                                places_.participant, places_.time,
                                                places_.mode,        places_.block};
@@ -309,21 +310,27 @@ void count_on(std::vector<results::AnswerRow>& answers) {
   }
 }
 
+std::string why_no_answer(const std::string& response, const std::string& column,
+                          const std::set<std::string>& responses) {
+  const auto like = std::ranges::find_if(
+      responses, [&](const std::string& name) { return as_read(name) == as_read(response); });
+  return fmt::format(
+      "response '{0}' is not a stimulus (if it can be answered, name it with --responses; if it "
+      "stands for a stimulus, say --responses '{0}=STIMULUS'; if it is none, --where "
+      "'{1}!={0}'{2})",
+      response, column,
+      like == responses.end() ? "" : fmt::format("; it reads like '{}': --merge-alike", *like));
+}
+
 void check_responses(const std::vector<results::AnswerRow>& answers,
-                     const std::vector<Origin>& origins, const std::set<std::string>& responses) {
+                     const std::vector<Origin>& origins, const std::string& column,
+                     const std::set<std::string>& responses) {
   const std::unordered_set<std::string_view> known{responses.begin(), responses.end()};
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const std::string& response = answers[i].response;
     if (!known.contains(response)) {
-      const auto like = std::ranges::find_if(
-          responses, [&](const std::string& name) { return as_read(name) == as_read(response); });
-      const std::string alike = like == responses.end() ? "" : *like;
-      throw core::InvalidInput{fmt::format(
-          "{}: response '{}' is not a stimulus (if it can be answered, name it with "
-          "--responses; if it stands for a stimulus, say --responses '{}=STIMULUS'; if "
-          "it is none, --where 'COLUMN!={}'{})",
-          to_text(origins[i]), response, response, response,
-          alike.empty() ? "" : fmt::format("; it reads like '{}': --merge-alike", alike))};
+      throw core::InvalidInput{
+          fmt::format("{}: {}", to_text(origins[i]), why_no_answer(response, column, responses))};
     }
   }
   if (responses.size() > max_classes) {
@@ -457,7 +464,7 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   for (const auto& [given, meaning] : meanings) {
     responses.insert(meaning);
   }
-  check_responses(table.answers, read.origins, responses);
+  check_responses(table.answers, read.origins, read.columns.response, responses);
   check_names(table.answers, files.front().file, stimuli, responses);
   check_right_answers(table.answers, read.origins);
   if (table.are_participants_known) {

@@ -10,7 +10,8 @@ namespace tapstudy::analysis {
 struct OtherColumns {
   std::vector<std::string> header{};
   std::vector<std::size_t> places{};
-  std::string weight{};  // by its name or as asked for; empty: none
+  std::string weight{};    // by its name or as asked for; empty: none
+  std::string response{};  // where the answers are
 };
 
 // Each answer as often as its row says, if rows say it; table.weight_column is that column. A table

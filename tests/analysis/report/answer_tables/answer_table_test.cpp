@@ -564,7 +564,7 @@ TEST_CASE(
   CHECK_THAT(refusal("stimulus,response\na,a\nb,A\n"),
              Contains("reads like 'a': --merge-alike") && Contains("--responses"));
   CHECK_THAT(refusal("stimulus,response\na,a\nb,Time out\n"),
-             Contains("if it is none, --where 'COLUMN!=Time out'"));
+             Contains("if it is none, --where 'response!=Time out'"));
   CHECK_THAT(refusal("stimulus,response\nNone,None\na,a\nNone,a\n"),
              Contains("--responses 'None'"));
   AnswerReading named;

@@ -282,9 +282,11 @@ struct Display {
 inline constexpr int max_participants = 10'000;
 
 struct Protocol {
-  std::string text;                     // the file, whole
-  Translations translations;            // of what participants read
-  std::vector<SurfaceSource> surfaces;  // the files that its plates name, whole
+  std::string text;           // the file, whole
+  Translations translations;  // of what participants read
+  // The files that its plates name, whole, and each repaired surface after that which it is made
+  // of.
+  std::vector<SurfaceSource> surfaces;
   std::string title;
   std::string notes;
   std::optional<int> participants;  // that are planned

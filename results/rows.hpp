@@ -14,9 +14,10 @@ enum class Mode { real, pilot, simulated };
 std::string to_text(Mode mode);
 Mode mode_from(const std::string& text);
 
-// Complete contents of a file named by the protocol; compressed in the database.
+// Complete contents of a file named by the protocol, or of a surface made of one because the
+// protocol asks for its repair; compressed in the database.
 struct SurfaceRow {
-  std::string file;  // as the protocol names it
+  std::string file;  // as the protocol names it, or how the surface was made
   std::string sha256;
   std::string bytes;
   bool operator==(const SurfaceRow& other) const = default;

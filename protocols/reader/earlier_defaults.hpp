@@ -10,7 +10,7 @@ struct EarlierDefaults {
 };
 
 // As parse_protocol and read_protocol, of a study that has begun.
-Protocol parse_protocol(const StudyText& study, const ReadFile& read_file,
+Protocol parse_protocol(const StudyText& study, const SurfaceFiles& files,
                         const EarlierDefaults& defaults);
 Protocol read_protocol(const std::string& file, const std::string& language,
                        const EarlierDefaults& defaults);

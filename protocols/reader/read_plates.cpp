@@ -13,6 +13,7 @@
 #include "protocols/reader/read_sections.hpp"
 #include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/repair_command.hpp"
+#include "protocols/surface/repaired_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -181,29 +182,103 @@ core::Solid solid_of(core::TriangleSurface surface, const std::string& file,
   return core::Solid{std::move(surface), std::move(command)};
 }
 
+RepairRequest read_repair(MapReader& repair) {
+  const Range length_m = Range::positive(100.0);
+  RepairRequest request;
+  request.terms = &key_terms;
+  request.join_share =
+      repair.number({"join_share", "corners no further apart than this share of the size are one"},
+                    {0.0, 0.01}, request.join_share);
+  if (repair.has("largest_hole_m")) {
+    request.longest_hole_m = repair.number(
+        {"largest_hole_m", "fills holes up to this many metres round; unset: as the size"},
+        length_m);
+  }
+  request.is_largest_piece_only = repair.yes_or_no(
+      {"largest_piece",
+       "drops all pieces but the one of the largest area, and those that wrap_m bridges to it"},
+      false);
+  if (repair.has("wrap_m")) {
+    request.wrap_m = repair.number({"wrap_m",
+                                    "where mending or simplifying does not do: a new surface "
+                                    "around all, which bridges this many metres; unset: none"},
+                                   length_m);
+  }
+  if (repair.has("max_triangles")) {
+    request.max_triangles =
+        repair.integer({"max_triangles", "simplifies to so many at most; unset: as it has"},
+                       fewest_triangles, max_triangles);
+  }
+  return request;
+}
+
+// Made of the file once, however many plates have it, or as it is stored.
+SurfaceSource repaired_surface_of(const std::string& file, const core::TriangleSurface& surface,
+                                  const AskedRepair& asked, const SurfaceFiles& files,
+                                  Protocol& protocol) {
+  const std::string name = repaired_name(file, asked);
+  const auto known = std::ranges::find(protocol.surfaces, name, &SurfaceSource::file);
+  if (known != protocol.surfaces.end()) {
+    return *known;
+  }
+  return protocol.surfaces.emplace_back(files.repaired ? repaired_source(name, files.repaired(name))
+                                                       : repaired_source(file, surface, asked));
+}
+
+// What a plate's key `surface` says, but for the pose.
+struct AskedSurface {
+  std::string file;
+  double metres_per_unit{};
+  std::optional<RepairRequest> repair{};
+};
+
+AskedSurface read_asked_surface(MapReader& reader) {
+  AskedSurface asked;
+  asked.file = reader.text({"file", "STL, PLY, OFF or OBJ; path relative to the protocol"});
+  asked.metres_per_unit = reader.number({"metres_per_unit", "0.001 for a file in millimetres"},
+                                        Range::positive(1000.0));
+  reader.map(
+      {"repair",
+       "makes of a surface that encloses no body one that does, as `tapstudy repair`; check, "
+       "modes and the report say what changed, and the result is stored with the study; "
+       "unset: such a surface is refused"},
+      Presence::optional, [&](MapReader& repair) { asked.repair = read_repair(repair); });
+  return asked;
+}
+
+core::TriangleSurface surface_asked_for(const AskedSurface& asked, const SurfaceFiles& files,
+                                        Protocol& protocol) {
+  SurfaceSource& source = surface_of(asked.file, files.contents, protocol);
+  auto [surface, noise] = read_surface(source, asked.metres_per_unit);
+  source.noise = noise;
+  if (asked.repair) {
+    surface =
+        read_surface(repaired_surface_of(asked.file, surface,
+                                         {asked.metres_per_unit, *asked.repair}, files, protocol),
+                     1.0)
+            .surface;
+  }
+  return surface;
+}
+
 // Problems of the surface itself are reported at its key; reading then continues.
-core::Shape read_surface_shape(MapReader& plate, const ReadFile& read_file, Protocol& protocol) {
+core::Shape read_surface_shape(MapReader& plate, const SurfaceFiles& files, Protocol& protocol) {
   core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // placeholder until read
   plate.map({"surface", "closed surface from a file, instead of a box"}, Presence::required,
             [&](MapReader& reader) {
-              const std::string file =
-                  reader.text({"file", "STL, PLY, OFF or OBJ; path relative to the protocol"});
               const std::size_t earlier_problems = reader.problems_in_file();
-              const double metres_per_unit = reader.number(
-                  {"metres_per_unit", "0.001 for a file in millimetres"}, Range::positive(1000.0));
-              const bool is_scaled = reader.problems_in_file() == earlier_problems;
+              const AskedSurface asked = read_asked_surface(reader);
+              const bool is_known = reader.problems_in_file() == earlier_problems;
               const Eigen::Isometry3d pose = read_pose(reader);
-              if (!is_scaled) {
+              if (!is_known) {
                 return;  // its size would be wrong
               }
               try {
-                SurfaceSource& source = surface_of(file, read_file, protocol);
-                auto [surface, noise] = read_surface(source, metres_per_unit);
-                source.noise = noise;
+                core::TriangleSurface surface = surface_asked_for(asked, files, protocol);
                 for (auto point : surface.points_m.rowwise()) {
                   point = (pose * point.transpose()).transpose().eval();
                 }
-                shape = solid_of(std::move(surface), file, metres_per_unit);
+                shape = solid_of(std::move(surface), asked.file, asked.metres_per_unit);
               } catch (const core::InvalidInput& error) {
                 reader.reject("file", error.what());
               }
@@ -247,7 +322,7 @@ void read_own_points(MapReader& reader, const Protocol& protocol, Plate& plate) 
 }
 }  // namespace
 
-void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file,
+void read_plates(MapReader& top, Protocol& protocol, const SurfaceFiles& files,
                  const EarlierDefaults& defaults) {
   top.each(
       {"plates", "named bodies, each a box or a closed surface, with mesh and boundary conditions"},
@@ -258,7 +333,7 @@ void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file,
         plate.shape = is_box ? core::Shape{core::Box{reader.numbers(
                                    {"size_m", "edge lengths of a box along x, y and z (thickness)"},
                                    3, allowed::edge_m)}}
-                             : read_surface_shape(reader, read_file, protocol);
+                             : read_surface_shape(reader, files, protocol);
         plate.mesh.order = defaults.element_order;
         reader.map({"mesh", "settings of the tetrahedral mesh"}, Presence::optional,
                    [&](MapReader& mesh) { read_mesh(mesh, plate.mesh); });

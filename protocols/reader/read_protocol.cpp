@@ -20,7 +20,7 @@ ReadFile beside(const std::string& file) {
   };
 }
 
-void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file,
+void read_whole(MapReader& top, Protocol& protocol, const SurfaceFiles& files,
                 const EarlierDefaults& defaults) {
   top.check_format("tapstudy/1");
   protocol.title = top.translated({"title",
@@ -44,7 +44,7 @@ void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file,
       [&](const core::Placement& placement) { protocol.placement = placement; });
   read_materials(top, protocol);
   read_points(top, protocol);
-  read_plates(top, protocol, read_file, defaults);
+  read_plates(top, protocol, files, defaults);
   read_recordings(top, protocol);
   read_contacts(top, protocol);
   read_stimuli(top, protocol);
@@ -59,13 +59,13 @@ void read_whole(MapReader& top, Protocol& protocol, const ReadFile& read_file,
   read_simulation(top, protocol);
 }
 
-Protocol parse(const StudyText& study, const ReadFile& read_file, const EarlierDefaults& defaults,
+Protocol parse(const StudyText& study, const SurfaceFiles& files, const EarlierDefaults& defaults,
                Problems& problems) {
   Protocol protocol;
   protocol.text = study.text;
   protocol.translations.language = study.language;
   MapReader top = MapReader::whole_file(study.text, study.file, problems, &protocol.translations);
-  read_whole(top, protocol, read_file, defaults);
+  read_whole(top, protocol, files, defaults);
   top.finish();
   return protocol;
 }
@@ -85,13 +85,13 @@ Protocol parse_protocol(const std::string& text, const std::string& file) {
 }
 
 Protocol parse_protocol(const StudyText& study, const ReadFile& read_file) {
-  return parse_protocol(study, read_file, {});
+  return parse_protocol(study, SurfaceFiles{read_file}, {});
 }
 
-Protocol parse_protocol(const StudyText& study, const ReadFile& read_file,
+Protocol parse_protocol(const StudyText& study, const SurfaceFiles& files,
                         const EarlierDefaults& defaults) {
   Problems problems{study.file};
-  Protocol protocol = parse(study, read_file, defaults, problems);
+  Protocol protocol = parse(study, files, defaults, problems);
   problems.throw_if_any();
   return protocol;
 }
@@ -102,12 +102,12 @@ Protocol read_protocol(const std::string& file, const std::string& language) {
 
 Protocol read_protocol(const std::string& file, const std::string& language,
                        const EarlierDefaults& defaults) {
-  return parse_protocol({contents_of(file), file, language}, beside(file), defaults);
+  return parse_protocol({contents_of(file), file, language}, SurfaceFiles{beside(file)}, defaults);
 }
 
 std::set<std::string> keys_asked_for(const std::string& text, const std::string& file) {
   Problems problems{file};
-  parse({text, file}, beside(file), {}, problems);
+  parse({text, file}, SurfaceFiles{beside(file)}, {}, problems);
   return problems.asked();
 }
 }  // namespace tapstudy::protocols

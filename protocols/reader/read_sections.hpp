@@ -14,8 +14,7 @@ void read_placement(MapReader& top, const Key& key, MapReader::Presence presence
                     const std::function<void(const core::Placement&)>& take);
 void read_materials(MapReader& top, Protocol& protocol);
 void read_points(MapReader& top, Protocol& protocol);
-// read_file: the bytes of a surface, by the name that the study gives it.
-void read_plates(MapReader& top, Protocol& protocol, const ReadFile& read_file,
+void read_plates(MapReader& top, Protocol& protocol, const SurfaceFiles& files,
                  const EarlierDefaults& defaults);
 void read_recordings(MapReader& top, Protocol& protocol);
 void read_contacts(MapReader& top, Protocol& protocol);

@@ -149,19 +149,20 @@ bool is_closed(const TriangleSurface& surface) {
 }
 
 [[noreturn]] void refuse(const Refusal& refusal, const SurfaceRepair& repair, double hole_m,
-                         double at_m) {
+                         const RepairRequest& request, double wrap_m) {
+  const RepairTerms& terms = *request.terms;
   std::string advice;
   if (repair.holes.longest_m > hole_m) {
-    advice = fmt::format("--largest-hole {:.3g} fills its longest hole, or ",
-                         1.01 * repair.holes.longest_m);
+    advice = fmt::format(fmt::runtime(terms.longest_hole), 1.01 * repair.holes.longest_m) +
+             " fills its longest hole, or ";
   }
   if (refusal.is_of_pieces) {
-    advice += "--largest-piece keeps one, or ";
+    advice += fmt::format("{} keeps one, or ", terms.largest_piece);
   }
-  throw SurfaceFault{
-      fmt::format("{}, also once it is repaired; nothing is written (try: {}--wrap {:.2g}, a new "
-                  "surface around all of it that bridges this many metres)",
-                  refusal.why, advice, at_m)};
+  throw SurfaceFault{fmt::format(
+      "{}, also once it is repaired{} (try: {}{}, a new surface around all of it that bridges this "
+      "many metres)",
+      refusal.why, terms.without_result, advice, fmt::format(fmt::runtime(terms.wrap), wrap_m))};
 }
 
 // Whether a wrap is mostly its own offset, as around a sheet: about twice that thick.
@@ -205,7 +206,7 @@ void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceR
     return;
   }
   if (!request.wrap_m) {
-    refuse(*refusal, repair, hole_m, advised_wrap_m(joined));
+    refuse(*refusal, repair, hole_m, request, advised_wrap_m(joined));
   }
   wrap(mended_surface.pieces_dropped > 0 ? mended_surface.surface : joined, request, repair);
 }
@@ -236,6 +237,18 @@ void simplify(const RepairRequest& request, SurfaceRepair& repair) {
     simplify(request, repair);
   }
 }
+[[noreturn]] void refuse_result(const std::string& why, const RepairRequest& request) {
+  const RepairTerms& terms = *request.terms;
+  const std::string of_wrap = terms.wrap;
+  const std::string advice =
+      request.max_triangles
+          ? fmt::format("a larger {}", terms.max_triangles)
+          : fmt::format("another {}, or {}", of_wrap.substr(0, of_wrap.find_first_of(": ")),
+                        terms.largest_piece);
+  throw SurfaceFault{fmt::format("{}, once it is {}{} (try {})", why,
+                                 request.max_triangles ? "simplified" : "wrapped",
+                                 terms.without_result, advice)};
+}
 }  // namespace
 
 SurfaceRepair repair_surface(const TriangleSurface& surface, const RepairRequest& request) {
@@ -251,10 +264,7 @@ SurfaceRepair repair_surface(const TriangleSurface& surface, const RepairRequest
   repair.surface = reread(repair.surface);
   check_count(repair.surface);
   if (const auto refusal = refusal_of(repair.surface)) {
-    throw SurfaceFault{fmt::format(
-        "{}, once it is {}; nothing is written (try {})", refusal->why,
-        request.max_triangles ? "simplified" : "wrapped",
-        request.max_triangles ? "a larger --max-triangles" : "another --wrap, or --largest-piece")};
+    refuse_result(refusal->why, request);
   }
   count_changes(joined, repair);
   repair.area_before_m2 = area_m2(surface);
@@ -264,6 +274,48 @@ SurfaceRepair repair_surface(const TriangleSurface& surface, const RepairRequest
   repair.farthest_from_old_m = farthest_m(repair.surface, surface);
   repair.farthest_from_new_m = farthest_m(surface, repair.surface);
   return repair;
+}
+
+namespace {
+std::string describe_holes(const Holes& holes) {
+  return holes.filled == 0
+             ? std::string{"holes filled: 0"}
+             : fmt::format(
+                   "holes filled: {}, the largest {:.4g} m round, at ({:.4g}, {:.4g}, "
+                   "{:.4g}) m",
+                   holes.filled, holes.longest_m, holes.at_m[0], holes.at_m[1], holes.at_m[2]);
+}
+}  // namespace
+
+std::vector<std::string> describe_changes(const SurfaceRepair& repair,
+                                          const RepairRequest& request) {
+  std::vector<std::string> lines{
+      fmt::format("corners joined: {} (no further apart than {:.2g} of the size)",
+                  repair.corners_joined, request.join_share),
+      describe_holes(repair.holes)};
+  if (request.is_largest_piece_only) {
+    lines.push_back(fmt::format("pieces dropped: {}", repair.pieces_dropped));
+  }
+  if (request.wrap_m) {
+    lines.push_back(repair.wrap_offset_m
+                        ? fmt::format("wrapped: gaps up to {:.3g} m are bridged, the surface lies "
+                                      "{:.3g} m outside",
+                                      *request.wrap_m, *repair.wrap_offset_m)
+                        : std::string{"not wrapped: that was not needed"});
+  }
+  lines.push_back(fmt::format("triangles: {} kept, {} turned, {} dropped, {} added", repair.kept,
+                              repair.turned, repair.dropped, repair.added));
+  lines.push_back(fmt::format("volume: {:.6g} m³ (before: {}), area: {:.6g} m² (before: {:.6g})",
+                              core::volume_m3(repair.surface),
+                              repair.volume_before_m3
+                                  ? fmt::format("{:.6g}", *repair.volume_before_m3)
+                                  : std::string{"none, it was open or not oriented"},
+                              area_m2(repair.surface), repair.area_before_m2));
+  lines.push_back(fmt::format(
+      "largest distance at sampled points: {:.3g} m from the surface before, and of that {:.3g} m "
+      "from this one",
+      repair.farthest_from_old_m, repair.farthest_from_new_m));
+  return lines;
 }
 
 double advised_wrap_m(const TriangleSurface& surface) {

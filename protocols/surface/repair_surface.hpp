@@ -1,10 +1,24 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/geometry/triangle_surface.hpp"
 #include "protocols/surface/mend_surface.hpp"
 namespace tapstudy::protocols {
+// How what a repair does is asked for, in what it says.
+struct RepairTerms {
+  const char* longest_hole;  // with the place of a number
+  const char* largest_piece;
+  const char* wrap;  // with the place of a number
+  const char* max_triangles;
+  const char* without_result;  // what a refusal adds
+};
+// Of `tapstudy repair`.
+inline constexpr RepairTerms option_terms{"--largest-hole {:.3g}", "--largest-piece",
+                                          "--wrap {:.2g}", "--max-triangles",
+                                          "; nothing is written"};
+
 struct RepairRequest {
   double join_share{1e-5};                 // of the size: corners no further apart are one
   std::optional<double> longest_hole_m{};  // round its border; unset: as long as the surface's size
@@ -13,7 +27,9 @@ struct RepairRequest {
   bool is_largest_piece_only{false};
   std::optional<double> wrap_m{};      // unset: what cannot be mended is refused
   std::optional<int> max_triangles{};  // unset: as many as it has
+  const RepairTerms* terms{&option_terms};
 };
+inline constexpr int fewest_triangles = 4;  // of a closed surface
 
 struct SurfaceRepair {
   core::TriangleSurface surface;  // passes check_surface; as read_surface reads ply_text of it
@@ -39,6 +55,10 @@ struct SurfaceRepair {
 // Throws SurfaceFault, with what to try, where the result would still be refused, and ModelError
 // where CGAL cannot do it.
 SurfaceRepair repair_surface(const core::TriangleSurface& surface, const RepairRequest& request);
+
+// What a repair changed, as measured: sentences, for people.
+std::vector<std::string> describe_changes(const SurfaceRepair& repair,
+                                          const RepairRequest& request);
 
 // The gaps that a wrap of it bridges, if nothing else is known: a fiftieth of its size.
 double advised_wrap_m(const core::TriangleSurface& surface);

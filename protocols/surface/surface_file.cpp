@@ -319,7 +319,7 @@ ReadSurface in_canonical_order(const std::vector<std::array<std::size_t, 3>>& tr
 
 SurfaceSource surface_source(std::string file, std::string bytes) {
   std::string sha256 = core::sha256(bytes);
-  return {std::move(file), std::move(bytes), std::move(sha256), {}};
+  return {std::move(file), std::move(bytes), std::move(sha256), {}, {}};
 }
 
 std::string SurfaceNoise::describe() const {

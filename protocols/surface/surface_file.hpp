@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/geometry/triangle_surface.hpp"
 namespace tapstudy::protocols {
@@ -19,6 +20,8 @@ struct SurfaceSource {
   std::string bytes;
   std::string sha256;    // of the bytes
   SurfaceNoise noise{};  // once it was read
+  // Of a surface that a repair made of a file, what it changed (repaired_surface.hpp).
+  std::vector<std::string> changes{};
 };
 
 struct ReadSurface {
@@ -28,6 +31,13 @@ struct ReadSurface {
 
 // The bytes of a file that a protocol names. Throws InvalidInput if there is none.
 using ReadFile = std::function<std::string(const std::string& file)>;
+// From where the surfaces of a protocol come.
+struct SurfaceFiles {
+  ReadFile contents;
+  // Of a study that has begun: the bytes of its repaired surfaces, by their names. Unset: they are
+  // made of the contents.
+  ReadFile repaired{};
+};
 inline constexpr std::size_t max_surface_bytes = 200'000'000;
 
 SurfaceSource surface_source(std::string file, std::string bytes);

@@ -78,7 +78,7 @@ std::string kind_of_model(const core::ModelReport& report, bool is_beam) {
 
 void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
   std::string warnings;
-  fmt::print("\nmodels\n{}", describe_noise(protocol));
+  fmt::print("\nmodels\n{}", describe_surfaces(protocol));
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
     if (!stimulus.technique->needs_model()) {
       continue;

@@ -238,11 +238,15 @@ namespace {
 constexpr double tolerated_error = 0.05;  // of a frequency
 }  // namespace
 
-std::string describe_noise(const protocols::Protocol& protocol) {
+std::string describe_surfaces(const protocols::Protocol& protocol) {
   std::string lines;
   for (const protocols::SurfaceSource& source : protocol.surfaces) {
     const std::string noise = source.noise.describe();
     lines += noise.empty() ? "" : fmt::format("  surface {}: {}\n", source.file, noise);
+    if (!source.changes.empty()) {
+      lines +=
+          fmt::format("  surface {}:\n    {}\n", source.file, fmt::join(source.changes, "\n    "));
+    }
   }
   return lines;
 }

@@ -26,8 +26,9 @@ void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& mod
 void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& models,
                             const protocols::Rig& rig);
 
-// A line for each surface file of the protocol that has something in excess of its body.
-std::string describe_noise(const protocols::Protocol& protocol);
+// Lines for each surface file of the protocol that has something in excess of its body, and for
+// each surface that is repaired: what changed.
+std::string describe_surfaces(const protocols::Protocol& protocol);
 // A line for each body whose elements are linear because quadratic ones were too many: a warning
 // with its cure.
 std::string warning_of_order(const protocols::PresentedStimulus& stimulus,

@@ -51,7 +51,7 @@ void add_errors(const core::FrequencyErrors& errors, nlohmann::ordered_json& jso
   }
 }
 
-void add_noise(const protocols::Protocol& protocol, nlohmann::ordered_json& json) {
+void add_surfaces(const protocols::Protocol& protocol, nlohmann::ordered_json& json) {
   for (const protocols::SurfaceSource& source : protocol.surfaces) {
     const protocols::SurfaceNoise& noise = source.noise;
     if (!noise.describe().empty()) {
@@ -59,6 +59,9 @@ void add_noise(const protocols::Protocol& protocol, nlohmann::ordered_json& json
                                        {"points_joined", noise.points},
                                        {"farthest_share_of_size", noise.farthest},
                                        {"triangles_without_area", noise.without_area}});
+    }
+    if (!source.changes.empty()) {
+      json["surface_repairs"].push_back({{"name", source.file}, {"changes", source.changes}});
     }
   }
 }
@@ -85,7 +88,7 @@ void print_json(const protocols::Protocol& protocol, const protocols::PresentedS
     json["alpha_per_s"] = plate.modal.damping->alpha_per_s;
     json["beta_s"] = plate.modal.damping->beta_s;
   }
-  add_noise(protocol, json);
+  add_surfaces(protocol, json);
   json["element_order"] = report.order();
   json["nodes"] = report.nodes;
   json["elements"] = report.tets;
@@ -246,7 +249,7 @@ void run_modes(const ModesOptions& options) {
   if (options.wants_json) {
     print_json(protocol, stimulus, plate, spec);
   } else {
-    fmt::print("{}", describe_noise(protocol));
+    fmt::print("{}", describe_surfaces(protocol));
     print_table(stimulus, spec, plate);
   }
 }

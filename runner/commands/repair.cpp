@@ -5,7 +5,6 @@
 
 #include "core/error.hpp"
 #include "core/files/output_files.hpp"
-#include "core/model/shape/shape.hpp"
 #include "protocols/surface/repair_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
 #include "protocols/yaml/text_file.hpp"
@@ -37,47 +36,13 @@ protocols::RepairRequest request_of(const RepairOptions& options) {
     request.wrap_m = options.wrap_m;
   }
   if (options.max_triangles != 0) {
-    constexpr int fewest = 4;
-    if (options.max_triangles < fewest) {
+    if (options.max_triangles < protocols::fewest_triangles) {
       throw core::InvalidInput{fmt::format("--max-triangles {}: a closed surface has {} at least",
-                                           options.max_triangles, fewest)};
+                                           options.max_triangles, protocols::fewest_triangles)};
     }
     request.max_triangles = options.max_triangles;
   }
   return request;
-}
-
-void print_repair(const RepairOptions& options, const protocols::SurfaceRepair& repair) {
-  fmt::print("corners joined: {} (no further apart than {:.2g} of the size)\n",
-             repair.corners_joined, options.join_share);
-  const protocols::Holes& holes = repair.holes;
-  fmt::print("holes filled: {}", holes.filled);
-  if (holes.filled > 0) {
-    fmt::print(", the largest {:.4g} m round, at ({:.4g}, {:.4g}, {:.4g}) m", holes.longest_m,
-               holes.at_m[0], holes.at_m[1], holes.at_m[2]);
-  }
-  fmt::print("\n");
-  if (options.is_largest_piece_only) {
-    fmt::print("pieces dropped: {}\n", repair.pieces_dropped);
-  }
-  if (options.wrap_m > 0.0) {
-    fmt::print("{}\n", repair.wrap_offset_m
-                           ? fmt::format("wrapped: gaps up to {:.3g} m are bridged, the surface "
-                                         "lies {:.3g} m outside",
-                                         options.wrap_m, *repair.wrap_offset_m)
-                           : std::string{"not wrapped: that was not needed"});
-  }
-  fmt::print("triangles: {} kept, {} turned, {} dropped, {} added\n", repair.kept, repair.turned,
-             repair.dropped, repair.added);
-  fmt::print("volume: {:.6g} m³ (before: {}), area: {:.6g} m² (before: {:.6g})\n",
-             core::volume_m3(repair.surface),
-             repair.volume_before_m3 ? fmt::format("{:.6g}", *repair.volume_before_m3)
-                                     : std::string{"none, it was open or not oriented"},
-             protocols::area_m2(repair.surface), repair.area_before_m2);
-  fmt::print(
-      "largest distance at sampled points: {:.3g} m from the surface before, and of that {:.3g} m "
-      "from this one\n",
-      repair.farthest_from_old_m, repair.farthest_from_new_m);
 }
 
 void repair(const RepairOptions& options) {
@@ -99,7 +64,9 @@ void repair(const RepairOptions& options) {
   if (!read.noise.describe().empty()) {
     fmt::print("read: {}\n", read.noise.describe());
   }
-  print_repair(options, repaired);
+  for (const std::string& line : protocols::describe_changes(repaired, request)) {
+    fmt::print("{}\n", line);
+  }
   fmt::print("{}: {} triangles, in metres (metres_per_unit: 1)\n", options.out,
              repaired.surface.triangles.rows());
 }

@@ -46,16 +46,15 @@ protocols::EarlierDefaults defaults_of(results::Store& store) {
 
 protocols::Protocol stored_protocol(results::Store& store) {
   const results::StudyRow study = store.study();
-  return protocols::parse_protocol(
-      {study.protocol_text, study.protocol_file},
-      [&](const std::string& file) {
-        const auto found = std::ranges::find(study.surfaces, file, &results::SurfaceRow::file);
-        if (found == study.surfaces.end()) {
-          throw core::InvalidInput{file + ": is not stored with the study"};
-        }
-        return found->bytes;
-      },
-      defaults_of(store));
+  const protocols::ReadFile stored = [&](const std::string& file) {
+    const auto found = std::ranges::find(study.surfaces, file, &results::SurfaceRow::file);
+    if (found == study.surfaces.end()) {
+      throw core::InvalidInput{file + ": is not stored with the study"};
+    }
+    return found->bytes;
+  };
+  return protocols::parse_protocol({study.protocol_text, study.protocol_file}, {stored, stored},
+                                   defaults_of(store));
 }
 
 protocols::Protocol checked_protocol(results::Store& store) {

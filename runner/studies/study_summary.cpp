@@ -349,6 +349,10 @@ std::vector<std::pair<std::string, std::string>> provenance(
     if (const std::string noise = surface.noise.describe(); !noise.empty()) {
       all.emplace_back("surface " + surface.file, noise);
     }
+    if (!surface.changes.empty()) {
+      all.emplace_back("surface " + surface.file,
+                       fmt::format("{}", fmt::join(surface.changes, "; ")));
+    }
   }
   return all;
 }

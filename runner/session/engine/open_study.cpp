@@ -9,7 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
-#include "protocols/reader/read_protocol.hpp"
+#include "protocols/reader/earlier_defaults.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
@@ -20,14 +20,15 @@ namespace {
 // A text of the same study, with the surfaces that the study has.
 template <class Surfaces>
 Protocol parsed(const std::string& text, const Surfaces& surfaces) {
-  return protocols::parse_protocol({text, "the study's protocol"}, [&](const std::string& file) {
+  const protocols::ReadFile stored = [&](const std::string& file) {
     for (const auto& surface : surfaces) {
       if (surface.file == file) {
         return surface.bytes;
       }
     }
     throw core::InvalidInput{file + ": is not stored with the study"};
-  });
+  };
+  return protocols::parse_protocol({text, "the study's protocol"}, {stored, stored}, {});
 }
 
 ChangesOfFile changes(const Protocol& before, const Protocol& now) {

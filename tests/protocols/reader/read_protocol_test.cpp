@@ -327,7 +327,7 @@ TEST_CASE("the text that is stored is the file's, and surfaces are beside it who
   const std::string file = testing::source("tests/data/every_key.yaml");
   const protocols::Protocol protocol = protocols::read_protocol(file);
   CHECK(protocol.text == testing::contents(file));
-  REQUIRE(protocol.surfaces.size() == 1);
+  REQUIRE(protocol.surfaces.size() == 2);  // the second is the first as repaired
   CHECK(protocol.surfaces.front().file == "tetrahedron.off");
   CHECK(protocol.surfaces.front().bytes ==
         testing::contents(testing::source("tests/data/tetrahedron.off")));

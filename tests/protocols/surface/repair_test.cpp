@@ -1,4 +1,7 @@
 // Surfaces that enclose no body yet: what repair makes of them, and what it refuses.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
@@ -6,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/shape/shape.hpp"
+#include "protocols/reader/earlier_defaults.hpp"
 #include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/repair_command.hpp"
 #include "protocols/surface/repair_surface.hpp"
@@ -292,4 +296,72 @@ TEST_CASE("a flat-sided body keeps its volume when it is simplified",
   CHECK(repair.surface.triangles.rows() <= 40);
   CHECK(core::volume_m3(repair.surface) == Approx(8e-6).epsilon(1e-6));
   CHECK(repair.farthest_from_new_m < 1e-8);
+}
+
+// tests/data/every_key.yaml with another tetrahedron, in memory.
+namespace {
+std::string whole_tetrahedron() {
+  return testing::contents(testing::source("tests/data/tetrahedron.off"));
+}
+std::string open_tetrahedron() {
+  return testing::replaced(testing::replaced(whole_tetrahedron(), "4 4 0", "4 3 0"), "3 0 2 1\n",
+                           "");
+}
+protocols::Protocol protocol_with(const std::string& repair, const std::string& surface) {
+  const std::string file = testing::source("tests/data/every_key.yaml");
+  std::string text = testing::contents(file);
+  const auto from = text.find("repair: {");
+  text.replace(from, text.find('}', from) + 1 - from, repair);
+  return protocols::parse_protocol({text, file}, [&](const std::string&) { return surface; });
+}
+const core::TriangleSurface& tetrahedron_of(const protocols::Protocol& protocol) {
+  return std::get<core::Solid>(protocol.plates.at("tetrahedron")->shape).surface();
+}
+std::string refusal_with(const std::string& repair, const std::string& surface) {
+  try {
+    protocol_with(repair, surface);
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+}  // namespace
+
+TEST_CASE("a surface is repaired where its protocol asks for that, and nowhere else",
+          "[protocols][surface][repair]") {
+  CHECK_THAT(refusal_with("offset_m: [0, 0, 0]", open_tetrahedron()),
+             Contains("surface.file") && Contains("try: tapstudy repair"));
+  const protocols::Protocol repaired =
+      protocol_with("repair: {largest_hole_m: 2}", open_tetrahedron());
+  CHECK(are_bitwise_equal(
+      tetrahedron_of(repaired),
+      tetrahedron_of(protocol_with("repair: {largest_hole_m: 2}", whole_tetrahedron()))));
+  REQUIRE(repaired.surfaces.size() == 2);
+  CHECK(repaired.surfaces[0].changes.empty());
+  CHECK_THAT(fmt::format("{}", fmt::join(repaired.surfaces[1].changes, "\n")),
+             Contains("holes filled: 1") && Contains("triangles: 3 kept, 0 turned, 0 dropped, 1"));
+}
+
+TEST_CASE("a study that has begun has the repaired surface that it stored",
+          "[protocols][surface][repair]") {
+  const protocols::Protocol began =
+      protocol_with("repair: {largest_hole_m: 2}", open_tetrahedron());
+  std::vector<std::string> asked_for;
+  const protocols::ReadFile of_contents = [](const std::string&) { return open_tetrahedron(); };
+  const protocols::ReadFile of_repaired = [&](const std::string& name) {
+    asked_for.push_back(name);
+    return testing::replaced(began.surfaces[1].bytes, "\n-0.1 0.173 ", "\n-0.1 0.174 ");
+  };
+  const protocols::Protocol gone_on =
+      protocols::parse_protocol({began.text, "study.yaml"}, {of_contents, of_repaired}, {});
+  CHECK(asked_for == std::vector<std::string>{began.surfaces[1].file});
+  CHECK(gone_on.surfaces[1].changes == began.surfaces[1].changes);
+  CHECK(core::bounds(tetrahedron_of(gone_on)).high_m.y() == Approx(0.174));
+}
+
+TEST_CASE("what a repair of a protocol's surface cannot cure is refused in the protocol's words",
+          "[protocols][surface][repair]") {
+  const std::string said = refusal_with("repair: {}", open_tetrahedron());
+  CHECK_THAT(said,
+             Contains("largest_hole_m: 1.05 fills") && Contains("wrap_m: 0.0") && !Contains("--"));
 }

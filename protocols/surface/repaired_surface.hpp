@@ -1,0 +1,27 @@
+#pragma once
+#include <string>
+
+#include "protocols/surface/repair_surface.hpp"
+#include "protocols/surface/surface_file.hpp"
+namespace tapstudy::protocols {
+// Of a protocol's key `repair`.
+inline constexpr RepairTerms key_terms{"largest_hole_m: {:.3g}", "largest_piece: true",
+                                       "wrap_m: {:.2g}", "max_triangles", ""};
+
+// A file's surface as its protocol asks for it to be repaired.
+struct AskedRepair {
+  double metres_per_unit{};
+  RepairRequest request;
+};
+
+// The name of the result, which says of what and how it was made.
+std::string repaired_name(const std::string& file, const AskedRepair& asked);
+
+// The result as it is stored with a study: under that name a PLY in metres, whose comments say what
+// changed. Throws as repair_surface.
+SurfaceSource repaired_source(const std::string& file, const core::TriangleSurface& surface,
+                              const AskedRepair& asked);
+
+// The same from its bytes.
+SurfaceSource repaired_source(const std::string& name, std::string bytes);
+}  // namespace tapstudy::protocols

@@ -103,5 +103,8 @@ void write_csv_files(const std::string& directory, Store& store, const StudyExpo
   write_traces(root, store, study, files);
   core::write_new_file(root / "csv-metadata.json", csvw_metadata(study.provenance, files));
   core::write_new_file(root / "protocol.yaml", study.protocol_text);
+  for (const auto& [name, text] : study.further_files) {
+    core::write_new_file(root / name, text);
+  }
 }
 }  // namespace tapstudy::results

@@ -62,11 +62,13 @@ struct StudyExport {
   std::vector<Table> tables;
   std::vector<FormText> forms;
   std::vector<std::int64_t> trials;  // whose traces are written: each must have one
+  // Written beside the CSV tables as they are: name and text.
+  std::vector<std::pair<std::string, std::string>> further_files{};
 };
 
 // Fills a directory: a file NAME.csv a table, csv-metadata.json (csv_export.cpp), protocol.yaml,
-// and of each trial that has a trace traces/trial_000001.csv. Throws InvalidInput where it cannot
-// be written, StoreError where the study cannot be read.
+// further files, and of each trial that has a trace traces/trial_000001.csv. Throws InvalidInput
+// where it cannot be written, StoreError where the study cannot be read.
 void write_csv_files(const std::string& directory, Store& store, const StudyExport& study);
 
 // Writes one new HDF5 file. Errors as above.

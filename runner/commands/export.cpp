@@ -13,6 +13,8 @@
 #include "runner/build_info/build_info.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/session/stimuli/model_library.hpp"
+#include "runner/studies/mixed_models/data.hpp"
+#include "runner/studies/mixed_models/fit_in_r.hpp"
 #include "runner/studies/protocol_tables.hpp"
 #include "runner/studies/stored_results.hpp"
 #include "runner/studies/stored_study.hpp"
@@ -97,27 +99,37 @@ results::StudyExport study_export(results::Store& store, bool has_tables) {
           {}};
 }
 
+// What mixed models are fitted to, and the script of R that does it.
+void add_mixed_models(results::Store& store, results::StudyExport& study) {
+  if (std::optional<results::Table> data =
+          stored_mixed_models_data(store, checked_protocol(store))) {
+    study.tables.push_back(std::move(*data));
+    study.further_files.emplace_back("mixed_models.R", mixed_models_script());
+  }
+}
+
 struct Format {
   const char* name;
   bool has_tables;  // of stimuli and their modes, too
   bool always_has_traces;
+  bool has_scripts;
   void (*write)(const std::string& out, results::Store& store, const results::StudyExport& study);
 };
 
 const std::array formats{
-    Format{"csv", true, false,
+    Format{"csv", true, false, true,
            [](const std::string& out, results::Store& store, const results::StudyExport& study) {
              core::write_new_directory(out, [&](const std::string& directory) {
                results::write_csv_files(directory, store, study);
              });
            }},
-    Format{"hdf5", true, true,
+    Format{"hdf5", true, true, false,
            [](const std::string& out, results::Store& store, const results::StudyExport& study) {
              core::write_new_file_by(out, [&](const std::string& file) {
                results::write_hdf5_file(file, store, study);
              });
            }},
-    Format{"bids", false, true,
+    Format{"bids", false, true, false,
            [](const std::string& out, results::Store& store, const results::StudyExport& study) {
              core::write_new_directory(out, [&](const std::string& directory) {
                results::write_bids_dataset(directory, store, study);
@@ -140,6 +152,9 @@ void run_export(const ExportOptions& options) {
     }
     const Format& format = *std::ranges::find(formats, options.format, &Format::name);
     results::StudyExport study = study_export(store, format.has_tables);
+    if (format.has_scripts) {
+      add_mixed_models(store, study);
+    }
     if (format.always_has_traces || options.wants_traces) {
       study.trials = results::trials_with_traces(store);
     }

@@ -17,6 +17,7 @@
 #include "core/files/output_files.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
+#include "runner/studies/mixed_models/fit_in_r.hpp"
 #include "runner/studies/study_summary.hpp"
 #include "runner/studies/table_summary.hpp"
 #include "runner/terminal/logging.hpp"
@@ -42,18 +43,8 @@ struct ReportOptions {
   bool shows_all{false};
 };
 
-// Real sessions by default; if there are none, the available ones, which the report states.
-Mode mode_to_report(const ReportOptions& options,
-                    const std::vector<results::SessionRow>& sessions) {
-  if (!options.mode.empty()) {
-    return results::mode_from(options.mode);
-  }
-  for (const Mode mode : {Mode::real, Mode::pilot}) {
-    if (std::ranges::find(sessions, mode, &results::SessionRow::mode) != sessions.end()) {
-      return mode;
-    }
-  }
-  return Mode::simulated;
+Mode mode_of(const ReportOptions& options, const std::vector<results::SessionRow>& sessions) {
+  return options.mode.empty() ? mode_to_report(sessions) : results::mode_from(options.mode);
 }
 
 // The journal alone is left where the database was lost.
@@ -81,7 +72,8 @@ Summary summary_of_directories(const ReportOptions& options,
   for (std::size_t i = 0; i < stores.size(); ++i) {
     studies.push_back({directories[i], &stores[i]});
   }
-  return summary_of_study(studies, mode_to_report(options, sessions), Detail::all, only);
+  return summary_of_study(studies, mode_of(options, sessions), Detail::all, only,
+                          fit_mixed_models_in_r);
 }
 
 // Splits the text as a row of a table: a comma within an answer is in quotes.
@@ -275,9 +267,10 @@ void add_report(CommandParser& line) {
                  "Output directory; default: report in the study's own directory");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},
                  "Which sessions: real, pilot or simulated");
-  command.option("--only", options->only,
-                 "Only these parts, comma-separated: names of blocks, contrasts, groups, "
-                 "confidence, sessions, procedures, questionnaires, rendered");
+  command.option(
+      "--only", options->only,
+      "Only these parts, comma-separated: names of blocks, contrasts, groups, "
+      "retest, mixed_models, confidence, sessions, procedures, questionnaires, rendered");
   command.flag("--all", options->shows_all, "Print the rows of all participants, however many");
   command.flag("--replace", options->replace, "Replace an earlier report");
   command.on_run([options] { run_report(*options); });

@@ -17,6 +17,7 @@
 #include "results/store/store.hpp"
 #include "results/store_error.hpp"
 #include "runner/commands/command_line.hpp"
+#include "runner/studies/mixed_models/fit_in_r.hpp"
 #include "runner/studies/stored_study.hpp"
 #include "runner/studies/study_summary.hpp"
 #include "runner/studies/study_verification.hpp"
@@ -31,8 +32,9 @@ struct PublishedReport {
   std::vector<std::string> added{};
 };
 // Compares what report.json, the tables beside it and the page hold; where it was made is left out,
-// and what it leaves out (--only) is not missed; one that differs and is older than the journal's
-// last entry is not compared. Throws StoreError if report.json is none.
+// what R fitted is taken as it is there, and what it leaves out (--only) is not missed; one that
+// differs and is older than the journal's last entry is not compared. Throws StoreError if
+// report.json is none.
 PublishedReport published_report(const std::string& directory, results::Store& store);
 
 namespace {
@@ -213,7 +215,9 @@ PublishedReport published_report(const std::string& study_directory, results::St
   analysis::Summary summary;
   try {
     mode = results::mode_from(published.at("modes").get<std::string>());
-    summary = summary_of_study({{study_directory, &store}}, mode);
+    summary =
+        summary_of_study({{study_directory, &store}}, mode, Detail::all, {},
+                         [&](const results::Table&) { return mixed_models_of_report(directory); });
   } catch (const core::Error& error) {  // of another version
     found.not_compared = error.what();
     return found;

@@ -112,6 +112,15 @@ std::set<std::string> rendered_stimuli(const protocols::Protocol& protocol,
   return names;
 }
 
+results::Mode mode_to_report(const std::vector<results::SessionRow>& sessions) {
+  for (const results::Mode mode : {results::Mode::real, results::Mode::pilot}) {
+    if (std::ranges::find(sessions, mode, &results::SessionRow::mode) != sessions.end()) {
+      return mode;
+    }
+  }
+  return results::Mode::simulated;
+}
+
 std::vector<results::AnswerRow> counted_answers(results::Store& store, results::Mode mode) {
   const std::map<std::string, std::string> excluded = store.excluded_participants();
   std::vector<results::AnswerRow> answers = results::stored_answers(store);

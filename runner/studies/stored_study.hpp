@@ -48,6 +48,9 @@ DoneBlocks done_blocks(const std::vector<StudyStore>& stores, results::Mode mode
 // Names of the stimuli that the device rendered in these blocks.
 std::set<std::string> rendered_stimuli(const protocols::Protocol& protocol, const DoneBlocks& done);
 
+// Whom a report is of where nobody says it: real participants; without any those there are.
+results::Mode mode_to_report(const std::vector<results::SessionRow>& sessions);
+
 // The answers that a report is of, with their alternatives: of one mode, without practice, catch
 // trials and excluded participants.
 std::vector<results::AnswerRow> counted_answers(results::Store& store, results::Mode mode);

@@ -31,6 +31,7 @@
 #include "runner/session/engine/practice.hpp"
 #include "runner/session/engine/stored_names.hpp"
 #include "runner/studies/methods_section.hpp"
+#include "runner/studies/mixed_models/data.hpp"
 #include "runner/studies/rendered_study.hpp"
 #include "runner/studies/stored_results.hpp"
 #include "runner/studies/stored_study.hpp"
@@ -533,7 +534,8 @@ std::vector<analysis::RepeatedBlock> repeated_blocks(const protocols::Protocol& 
 void leave_out_unwanted(const Wanted& wanted, const std::vector<results::AnswerRow>& answers,
                         analysis::StudyDesign& design) {
   namespace names = analysis::study_sections;
-  if (wanted.has(names::contrasts) || wanted.has(names::groups) || wanted.has(names::retest)) {
+  if (wanted.has(names::contrasts) || wanted.has(names::groups) || wanted.has(names::retest) ||
+      wanted.has(names::mixed_models)) {
     return;
   }
   std::erase_if(design.blocks, [&](const analysis::BlockDesign& block) {
@@ -542,10 +544,18 @@ void leave_out_unwanted(const Wanted& wanted, const std::vector<results::AnswerR
   });
 }
 
-// They stand before the other sections: groups first, then blocks, then test and retest.
-void add_comparisons(const protocols::Protocol& protocol,
-                     const std::vector<results::SessionRow>& sessions, const Wanted& wanted,
-                     Summary& summary) {
+std::optional<analysis::ReportSection> mixed_models(const protocols::Protocol& protocol,
+                                                    const StoredResults& all,
+                                                    const FitMixedModels& fit,
+                                                    const Summary& summary) {
+  const auto data =
+      fit ? mixed_models_data(protocol, all.answers, summary.blocks, all.sessions) : std::nullopt;
+  return data ? analysis::mixed_models_section(fit(*data)) : std::nullopt;
+}
+
+// They stand before the other sections: groups first, then blocks, test and retest, mixed models.
+void add_comparisons(const protocols::Protocol& protocol, const StoredResults& all,
+                     const FitMixedModels& fit, const Wanted& wanted, Summary& summary) {
   namespace names = analysis::study_sections;
   const auto add = [&](std::string_view name, const auto& compute) {
     if (!wanted.has(name)) {
@@ -555,6 +565,7 @@ void add_comparisons(const protocols::Protocol& protocol,
       summary.sections.insert(summary.sections.begin(), std::move(*section));
     }
   };
+  add(names::mixed_models, [&] { return mixed_models(protocol, all, fit, summary); });
   add(names::retest,
       [&] { return analysis::retest_section(summary.blocks, repeated_blocks(protocol)); });
   add(names::contrasts, [&] {
@@ -562,13 +573,14 @@ void add_comparisons(const protocols::Protocol& protocol,
                                      protocol.block_order.order == protocols::Order::listed);
   });
   add(names::groups, [&] {
-    return analysis::groups_section(summary.blocks, participant_groups(protocol, sessions));
+    return analysis::groups_section(summary.blocks, participant_groups(protocol, all.sessions));
   });
 }
 }  // namespace
 
 Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detail detail,
-                         const std::vector<std::string>& only) {
+                         const std::vector<std::string>& only,
+                         const FitMixedModels& fit_mixed_models) {
   check_same_protocol(stores);
   check_different_participants(stores);
   const results::StudyRow study = stores.front().store->study();
@@ -603,7 +615,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
   const DoneBlocks done = done_blocks(stores, mode);
   summary.sections = sections_of(protocol, stores, mode, done, wanted);
-  add_comparisons(protocol, all.sessions, wanted, summary);
+  add_comparisons(protocol, all, fit_mixed_models, wanted, summary);
   summary.provenance = provenance(study, protocol, all.sessions);
   summary.procedure = describe_procedure(protocol, all.sessions, summary.participant_ids, done);
   summary.unfinished = std::move(all.unfinished);

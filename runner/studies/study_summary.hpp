@@ -8,6 +8,7 @@
 #include "protocols/protocol.hpp"
 #include "results/rows.hpp"
 #include "results/store/store.hpp"
+#include "runner/studies/mixed_models/fit_in_r.hpp"
 #include "runner/studies/stored_study.hpp"
 namespace tapstudy::runner {
 // Where a study's report lies, beside study.db.
@@ -22,10 +23,11 @@ enum class Detail { all, main_results };  // of a report, or of a simulated desi
 // catch trials are named, and left out of the results. only: the names of blocks and sections that
 // are asked for (empty: all); what neither they nor declared hypotheses need is not computed.
 // Throws InvalidInput if there is no answer, two stores are of different protocols, a participant
-// is in two of them, or a name is none.
+// is in two of them, or a name is none. Without fit_mixed_models there are none.
 analysis::Summary summary_of_study(const std::vector<StudyStore>& stores, results::Mode mode,
                                    Detail detail = Detail::all,
-                                   const std::vector<std::string>& only = {});
+                                   const std::vector<std::string>& only = {},
+                                   const FitMixedModels& fit_mixed_models = nullptr);
 
 // What a study's sessions rendered otherwise than this version would, because an earlier one ran
 // them: sentences, which the report has among its deviations. Versions that are not of the form

@@ -29,12 +29,13 @@ namespace study_sections {
 inline constexpr std::string_view contrasts = "contrasts";
 inline constexpr std::string_view groups = "groups";
 inline constexpr std::string_view retest = "retest";
+inline constexpr std::string_view mixed_models = "mixed_models";
 inline constexpr std::string_view sessions = "sessions";
 inline constexpr std::string_view confidence = "confidence";
 inline constexpr std::string_view procedures = "procedures";
 inline constexpr std::string_view questionnaires = "questionnaires";
 inline constexpr std::string_view rendered = "rendered";
-inline constexpr std::array all{contrasts,  groups,     retest,         sessions,
+inline constexpr std::array all{contrasts,  groups,     retest,         mixed_models, sessions,
                                 confidence, procedures, questionnaires, rendered};
 }  // namespace study_sections
 

@@ -1,0 +1,103 @@
+// Mixed models of a study's answers, fitted by R.
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "runner/studies/mixed_models/fit_in_r.hpp"
+#include "support/built_paths.hpp"
+#include "support/catch.hpp"
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+using testing::TempDirectory;
+
+namespace {
+std::string printed(const std::string& shell) {
+  const auto run = testing::run_program({"/bin/sh", "-c", shell});
+  INFO(shell << '\n' << run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  return run.standard_output;
+}
+
+nlohmann::json models_in(const std::string& report) {
+  return nlohmann::json::parse(testing::contents(report + "/report.json"))
+      .at("study")
+      .at("mixed_models");
+}
+
+// Six simulated participants of a factorial design, structure by material.
+std::string factorial_study(const TempDirectory& directory) {
+  std::string study = directory / "study";
+  REQUIRE(testing::tapstudy({"simulate", testing::shipped("paper/discrimination.yaml"),
+                             "--participants", "6", "--seed", "3", "--no-traces", "--out", study})
+              .exit_code == 0);
+  return study;
+}
+}  // namespace
+
+// The other programs: lme4 and ordinal called directly, on single answers.
+TEST_CASE("mixed models are those that R's packages fit, of public and of simulated data",
+          "[runner][mixed_models][slow]") {
+  const TempDirectory directory;
+  const std::string script = directory / "mixed_models.R";
+  testing::write(script, runner::mixed_models_script());
+  const auto compared = testing::run_program(
+      {"/usr/bin/Rscript", "--vanilla",
+       testing::source("tests/runner/studies/mixed_models/compare_with_packages.R"), script,
+       directory.path()});
+  INFO(compared.standard_error);
+  CHECK(compared.exit_code == 0);
+  CHECK_THAT(compared.standard_output, Contains("answered factor_a=a1:factor_b=b1:group=experts") &&
+                                           Contains("thresholds factor_a=a1:factor_b=b1"));
+}
+
+TEST_CASE("the exported script finds what the report says, of all answers that count",
+          "[runner][mixed_models][slow]") {
+  const TempDirectory directory;
+  const std::string study = factorial_study(directory);
+  const std::string exported = directory / "csv";
+  REQUIRE(testing::tapstudy({"export", study, "--out", exported}).exit_code == 0);
+  const std::string counted =
+      "FROM v_trials WHERE status = 'answered' AND NOT is_practice AND NOT is_catch";
+  CHECK(printed("python3 -c \"import pandas; d = pandas.read_csv('" + exported +
+                "/mixed_models_data.csv'); print(d['count'].sum(), "
+                "int((d['count'] * d.outcome).sum()), sep='|')\"") ==
+        printed("sqlite3 '" + study + "/study.db' \"SELECT count(*), sum(is_correct) " + counted +
+                "\""));
+  REQUIRE(testing::tapstudy({"report", study}).exit_code == 0);
+  printed("Rscript --vanilla '" + exported + "/mixed_models.R'");  // beside its data
+  std::ifstream file{exported + "/mixed_models.csv"};
+  const auto by_script = analysis::read_mixed_models(file, "mixed_models.csv");
+  const nlohmann::json reported = models_in(study + "/report");
+  REQUIRE(by_script.size() == reported.size());
+  bool has_interaction = false;
+  for (std::size_t i = 0; i < by_script.size(); ++i) {
+    const std::string term = reported[i].at("term");
+    CAPTURE(term);
+    CHECK(term == by_script[i].term);
+    CHECK(reported[i].at("p").is_null() != by_script[i].p.has_value());
+    if (by_script[i].estimate) {
+      CHECK(reported[i].at("estimate").get<double>() == *by_script[i].estimate);
+    }
+    has_interaction = has_interaction || (term.starts_with("factor_material=") &&
+                                          term.find(":factor_structure=") != std::string::npos);
+  }
+  CHECK(has_interaction);
+  CHECK_THAT(testing::contents(study + "/report/report.html"),
+             Contains("6 participants, ") && Contains("Mixed models"));
+  const auto verified = testing::tapstudy({"verify", study});
+  INFO(verified.standard_output);
+  CHECK(verified.exit_code == 0);
+  CHECK_THAT(verified.standard_output, Contains("identical to a regenerated report"));
+
+  SECTION("without R one line says how to get it, and the rest is reported") {
+    const auto without = testing::run_program(
+        {"/usr/bin/env", "PATH=" + directory.path(), testing::tapstudy_program(), "report", study,
+         "--only", "mixed_models", "--out", directory / "without"});
+    INFO(without.standard_error);
+    REQUIRE(without.exit_code == 0);
+    const nlohmann::json models = models_in(directory / "without");
+    REQUIRE(models.size() == 1);
+    CHECK_THAT(models[0].at("note").get<std::string>(),
+               Contains("apt install r-base-core r-cran-lme4 r-cran-ordinal"));
+  }
+}

@@ -268,7 +268,11 @@ struct Hypothesis {
   std::string statement;
   std::string block;
   Claim claim{};
-  std::string stimulus;  // chosen_above_chance: which
+  std::string stimulus;  // chosen_above_chance, rated_highest: which; equivalent: one of them
+  std::vector<std::string> factors;  // interaction: of these two
+  std::string other_stimulus;        // equivalent: to this one
+  std::string other_block;           // equivalent: the whole block to this one
+  double within{};  // equivalent: the largest difference that is none; of thresholds the ratio
 };
 
 // What the pages of a session show. Of the plate its shape, in neutral colour.

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "analysis/report/answer_tables/answer_table.hpp"
 #include "analysis/report/confusion/confusion_summary.hpp"
 #include "analysis/report/document/block_summary.hpp"
 #include "analysis/report/statistic.hpp"
+#include "analysis/report/study/planned_comparisons.hpp"
 #include "analysis/statistics/rank_tests.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -54,6 +56,9 @@ std::string left_out(const BlockDesign& block) {
   for (const PlannedHypothesis& planned : block.hypotheses) {
     words += fmt::format("; hypothesis '{}' is not tested", planned.name);
   }
+  for (const PlannedComparison& planned : block.comparisons) {
+    words += fmt::format("; hypothesis '{}' is not tested", planned.hypothesis.name);
+  }
   return words;
 }
 }  // namespace
@@ -71,6 +76,7 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
   summary.participants = static_cast<int>(summary.participant_ids.size());
   summary.loop = loop_quality(answers);
   std::vector<std::shared_ptr<BlockSummary>> blocks;
+  std::map<std::string, std::vector<AnswerRow>> compared;  // answers, by block
   for (const BlockDesign& block : design.blocks) {
     BlockRows rows;
     std::ranges::copy_if(answers, std::back_inserter(rows.answers),
@@ -87,7 +93,11 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
     for (const BlockPart& part : parts_at_further_values(block, rows)) {
       blocks.push_back(find_statistic(block.statistic).summarise(part.design, part.rows));
     }
+    if (!block.comparisons.empty()) {
+      compared.emplace(block.name, std::move(rows.answers));
+    }
   }
+  add_planned_comparisons(design, compared, blocks);
   adjust(blocks);
   summary.blocks.assign(blocks.begin(), blocks.end());
   return summary;

@@ -1,4 +1,4 @@
-// Tapping points, stimuli and hypotheses.
+// Tapping points and stimuli.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -306,39 +306,5 @@ void read_stimuli(MapReader& top, Protocol& protocol) {
         protocol.stimuli.push_back(stimulus);
       });
   check_points(top, protocol);
-}
-
-void read_hypotheses(MapReader& top, Protocol& protocol) {
-  std::vector<std::string> blocks;
-  std::ranges::transform(protocol.blocks, std::back_inserter(blocks), &Block::name);
-  top.list(
-      {"hypotheses", "declared before the study; reports test these as planned"},
-      Presence::optional, [&](MapReader& reader) {
-        Hypothesis hypothesis;
-        hypothesis.name = reader.name({"name", "short name of the hypothesis"});
-        hypothesis.statement = reader.text({"statement", "the hypothesis in words, for reports"});
-        hypothesis.block = reader.word({"block", "name of a block"}, "block", blocks);
-        hypothesis.claim = reader.one_of<Claim>(
-            {"claim",
-             "accuracy_above_chance for tasks with right answers, chosen_above_chance for choice "
-             "and paired, rated_highest for rating"},
-            {{"accuracy_above_chance", Claim::accuracy_above_chance},
-             {"chosen_above_chance", Claim::chosen_above_chance},
-             {"rated_highest", Claim::rated_highest}});
-        const Block* const block = protocol.find_block(hypothesis.block);
-        const bool is_known = block != nullptr && block->task != nullptr;
-        if (hypothesis.claim != Claim::accuracy_above_chance) {
-          hypothesis.stimulus = reader.word(
-              {"stimulus", "stimulus of the block that is expected to be chosen, or rated highest"},
-              "stimulus of the block", is_known ? block->stimuli : stimulus_names(protocol));
-        }
-        if (is_known && block->task->claim() != hypothesis.claim) {
-          reader.reject("claim", "does not fit the task of the block");
-        } else if (is_known && block->comparison) {
-          reader.reject("block",
-                        "has procedures: its threshold is estimated, and no claim is tested");
-        }
-        protocol.hypotheses.push_back(hypothesis);
-      });
 }
 }  // namespace tapstudy::protocols

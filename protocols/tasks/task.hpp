@@ -19,7 +19,13 @@ struct SimulatedTapSettings;
 struct Simulation;
 
 // Claims that a hypothesis can make about a block.
-enum class Claim { accuracy_above_chance, chosen_above_chance, rated_highest };
+enum class Claim {
+  accuracy_above_chance,
+  chosen_above_chance,
+  rated_highest,
+  interaction,
+  equivalent
+};
 
 // One of the things that can be felt in a trial.
 struct Alternative {

@@ -160,6 +160,18 @@ analysis::Vote vote_of(const protocols::Block& block) {
   return block.vote == protocols::Vote::first ? analysis::Vote::first : analysis::Vote::majority;
 }
 
+void add_hypothesis(const protocols::Hypothesis& hypothesis, analysis::BlockDesign& part) {
+  const analysis::PlannedHypothesis planned{hypothesis.name, hypothesis.statement,
+                                            hypothesis.stimulus};
+  if (hypothesis.claim == protocols::Claim::interaction ||
+      hypothesis.claim == protocols::Claim::equivalent) {
+    part.comparisons.push_back({planned, hypothesis.factors, hypothesis.other_stimulus,
+                                hypothesis.other_block, hypothesis.within});
+  } else {
+    part.hypotheses.push_back(planned);
+  }
+}
+
 std::string chance_assumption(const protocols::Protocol& protocol) {
   const protocols::SimulatedObserverSettings& observer = protocol.simulation.observer;
   return fmt::format(
@@ -193,7 +205,7 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
     }
     for (const protocols::Hypothesis& hypothesis : protocol.hypotheses) {
       if (hypothesis.block == block.name) {
-        part.hypotheses.push_back({hypothesis.name, hypothesis.statement, hypothesis.stimulus});
+        add_hypothesis(hypothesis, part);
       }
     }
     design.blocks.push_back(part);
@@ -538,8 +550,15 @@ void leave_out_unwanted(const Wanted& wanted, const std::vector<results::AnswerR
       wanted.has(names::mixed_models)) {
     return;
   }
+  std::set<std::string> others;
+  for (const analysis::BlockDesign& block : design.blocks) {
+    for (const analysis::PlannedComparison& planned : block.comparisons) {
+      others.insert(planned.other_block);
+    }
+  }
   std::erase_if(design.blocks, [&](const analysis::BlockDesign& block) {
-    return !wanted.has(block.name) && block.hypotheses.empty() &&
+    return !wanted.has(block.name) && block.hypotheses.empty() && block.comparisons.empty() &&
+           !others.contains(block.name) &&
            std::ranges::find(answers, block.name, &results::AnswerRow::block) != answers.end();
   });
 }

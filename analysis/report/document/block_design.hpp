@@ -14,6 +14,14 @@ struct PlannedHypothesis {
   std::string statement;
   std::string stimulus;  // expected choice; empty if the claim is not about one stimulus
 };
+// A declared hypothesis about means over participants of what each of them answered.
+struct PlannedComparison {
+  PlannedHypothesis hypothesis;
+  std::vector<std::string> factors{};  // an interaction of two; empty: an equivalence
+  std::string other_stimulus{};        // to this, or …
+  std::string other_block{};           // … to this block
+  double within{};  // the largest difference that is none; of ratios the largest ratio
+};
 // The choice that counts of a participant who chose several times: the most frequent (of equals the
 // earliest), or the first.
 enum class Vote { majority, first };
@@ -92,6 +100,7 @@ struct BlockDesign {
   bool has_own_guess_rate{};
   // Main results only: what takes long and they do not depend on is left out.
   bool is_for_main_results{};
+  std::vector<PlannedComparison> comparisons{};  // hypotheses, too
 };
 struct StudyDesign {
   std::string title;

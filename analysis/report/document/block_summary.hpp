@@ -64,6 +64,7 @@ struct HypothesisResult {
   std::optional<double> p;         // unset where there is no test: `test` says why
   double p_floor{};                // where no draw was as good: p is only known to be no larger
   std::optional<double> p_holm{};  // adjusted for all of the study's hypotheses (Holm 1979)
+  std::string finding{};           // in words, where nothing is counted against chance
 };
 
 // What a block was made to find out, as one number of the whole sample.

@@ -57,10 +57,7 @@ void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult
   }
   out << "<h3>Declared before the study</h3><ul>\n";
   for (const HypothesisResult& result : hypotheses) {
-    const std::string observed = result.p
-                                     ? fmt::format("{} against {:.0f} % by chance; ",
-                                                   fraction(result.observed), 100.0 * result.chance)
-                                     : "";
+    const std::string observed = result.p ? escaped(finding_of(result)) + "; " : "";
     const std::string adjusted =
         result.p_holm ? fmt::format("; {} after {}", p_value(*result.p_holm), "Holm 1979"_source)
                       : "";

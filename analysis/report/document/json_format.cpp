@@ -26,7 +26,8 @@ nlohmann::ordered_json as_json(const std::vector<HypothesisResult>& hypotheses) 
                     {"statement", result.planned.statement},
                     {"test", result.test},
                     {"observed", as_json(result.observed)},
-                    {"chance", result.chance},
+                    {"chance", result.finding.empty() ? Json(result.chance) : Json(nullptr)},
+                    {"finding", result.finding},
                     {"p", result.p ? Json(*result.p) : Json(nullptr)},
                     {"p_is_upper_bound", result.p_floor > 0.0},
                     {"p_holm", result.p_holm ? Json(*result.p_holm) : Json(nullptr)}});

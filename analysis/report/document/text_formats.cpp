@@ -79,9 +79,8 @@ void write_hypotheses_text(std::ostream& out, const std::vector<HypothesisResult
         result.p_holm ? fmt::format(", {} after {}", p_value(*result.p_holm), "Holm 1979"_source)
                       : "";
     out << wrapped(result.planned.statement, 2)
-        << wrapped(result.p ? fmt::format("{} against {:.0f} % by chance: {} ({}){}",
-                                          fraction(result.observed), 100.0 * result.chance,
-                                          p_value(result), result.test, adjusted)
+        << wrapped(result.p ? fmt::format("{}: {} ({}){}", finding_of(result), p_value(result),
+                                          result.test, adjusted)
                             : "not tested: " + result.test,
                    4);
   }

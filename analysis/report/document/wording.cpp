@@ -49,6 +49,12 @@ std::string percent_range(const Interval& shares) {
   return fmt::format("{:.{}f}–{:.{}f} %", 100.0 * shares.low, digits, 100.0 * shares.high, digits);
 }
 
+std::string finding_of(const HypothesisResult& result) {
+  return result.finding.empty() ? fmt::format("{} against {:.0f} % by chance",
+                                              fraction(result.observed), 100.0 * result.chance)
+                                : result.finding;
+}
+
 std::string p_value(const HypothesisResult& result) {
   if (!result.p) {
     return "not tested";

@@ -20,6 +20,8 @@ std::string percent_range(const Interval& shares);
 std::string p_value(double p);  // "p = .020", "p < .001"
 // The same, "p ≤ 1/10000" where only a bound is known, or "not tested".
 std::string p_value(const HypothesisResult& result);
+// "12/16 against 25 % by chance", or its finding.
+std::string finding_of(const HypothesisResult& result);
 
 // "(95 % CI over 4 participants 14–92 %)"; where the mean of participants is not the share of all
 // answers together, "(mean of 4 participants 61 %, 95 % CI 14–92 %)"; without an interval it says

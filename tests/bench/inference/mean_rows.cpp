@@ -6,7 +6,9 @@
 #include "analysis/statistics/detection/rates.hpp"
 #include "analysis/statistics/population/independent_groups.hpp"
 #include "analysis/statistics/population/means.hpp"
+#include "analysis/statistics/population/planned_contrasts.hpp"
 #include "analysis/statistics/scaling/power_law.hpp"
+#include "core/error.hpp"
 #include "inference/people.hpp"
 #include "inference/rows.hpp"
 namespace tapstudy::bench {
@@ -71,6 +73,14 @@ std::optional<Outcome> paired_difference(const StudyDraw& draw) {
   return interval ? std::optional{holds(*interval, -0.2)} : std::nullopt;
 }
 
+std::optional<Outcome> equivalence_p(const std::vector<double>& differences, double bound) {
+  try {
+    return Outcome{analysis::equivalence_test(differences, bound).p};
+  } catch (const core::NotEstimable&) {  // all differences are equal
+    return std::nullopt;
+  }
+}
+
 std::vector<Row> rows_within() {
   using enum Kind;
   constexpr const char* task = "blocks compared";
@@ -92,6 +102,31 @@ std::vector<Row> rows_within() {
            one = draw.rng.below(2) == 0 ? one : analysis::Interval{-one.high, -one.low};
          }
          return std::optional{Outcome{analysis::censored_contrast(found, 1).p}};
+       }},
+      {size, task, "equivalence of shares .7 and .8 within .1, some stop", By::correlations,
+       [](const StudyDraw& draw) {
+         std::vector<double> differences = shares_of(0.8, draw);
+         const std::vector<double> others = shares_of(0.7, draw);
+         std::ranges::transform(differences, others, differences.begin(), std::minus<>{});
+         return equivalence_p(differences, 0.1);
+       }},
+      {size, task, "equivalence of normal values, at its bound of one SD", By::people,
+       [](const StudyDraw& draw) {
+         return equivalence_p(normal_values(draw.people, 1.0, 1.0, draw.rng), 1.0);
+       }},
+      {size, task, "interaction of two factors, of shares .6, some stop", By::correlations,
+       [](const StudyDraw& draw) {
+         std::vector<analysis::LevelTable> people(static_cast<std::size_t>(draw.people),
+                                                  {{0.0, 0.0}, {0.0, 0.0}});
+         for (const std::size_t row : {0U, 1U}) {
+           for (const std::size_t column : {0U, 1U}) {
+             const std::vector<double> shares = shares_of(0.6, draw);
+             for (std::size_t i = 0; i < people.size(); ++i) {
+               people[i][row][column] = shares[i];
+             }
+           }
+         }
+         return std::optional{Outcome{analysis::interaction_test(people, 1).p}};
        }},
       {coverage, "two studies compared", "difference of shares .6 and .8", By::correlations,
        difference_of_studies},

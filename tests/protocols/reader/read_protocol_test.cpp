@@ -288,6 +288,30 @@ TEST_CASE("what makes no sense as a study is refused", "[protocols]") {
   CHECK_THAT(refusal(replaced(discrimination(), from, to)), Contains(said));
 }
 
+TEST_CASE("an interaction and an equivalence are refused where nothing could be tested",
+          "[protocols]") {
+  const std::string text =
+      replaced(discrimination(), "claim: accuracy_above_chance", "claim: CLAIM");
+  const auto with_claim = [&](const std::string& claim) {
+    return refusal(replaced(text, "claim: CLAIM", "claim: " + claim));
+  };
+  CHECK(with_claim("interaction\n    factors: [structure, material]") == "accepted");
+  CHECK(with_claim("equivalent\n    stimulus: mdf_two\n    to: mdf_three\n    within: 0.1") ==
+        "accepted");
+  CHECK_THAT(with_claim("interaction\n    factors: [structure]"),
+             Contains("hypotheses[0].factors: an interaction is of two factors"));
+  CHECK_THAT(with_claim("equivalent\n    stimulus: mdf_two\n    to: mdf_two\n    within: 0.1"),
+             Contains("hypotheses[0].to: is the stimulus itself"));
+  CHECK_THAT(with_claim("equivalent\n    to_block: nowhere\n    within: 0.1"),
+             Contains("hypotheses[0].to_block: 'nowhere'"));
+  const std::string block = text.substr(text.find("stimuli: [acrylic_two"));
+  CHECK_THAT(refusal(replaced(replaced(text, "claim: CLAIM",
+                                       "claim: interaction\n    factors: [structure, material]"),
+                              "stimuli: [acrylic_two, mdf_two, acrylic_three, mdf_three]",
+                              "stimuli: [acrylic_two, mdf_two, acrylic_three]")),
+             Contains("hypotheses[0].factors: the block's stimuli are not all combinations"));
+}
+
 TEST_CASE("a coupled finger without a mass, or not held to the hand, is one error at its line",
           "[protocols][coupled]") {
   const std::string coupled =

@@ -86,9 +86,10 @@ TEST_CASE("of a text that changed the first line that differs is told, with wher
 // A name may hold points, so that what it is of has the path of another's text.
 TEST_CASE("a stimulus whose name ends in a key of texts is data", "[protocols][texts]") {
   const auto with = [](const std::string& material) {
-    return testing::replaced(every_key_text(), "  d:\n",
-                             "  a.label: {plate: screwed, material: " + material +
-                                 ", technique: fem, factors: {material: mdf}}\n  d:\n");
+    return testing::replaced(
+        every_key_text(), "  d:\n",
+        "  a.label: {plate: screwed, material: " + material +
+            ", technique: fem, factors: {material: mdf, held: left, seen: left}}\n  d:\n");
   };
   CHECK(changes(with("mdf"), with("oak")).data_keys == testing::Names{"stimuli.a.label.material"});
 }

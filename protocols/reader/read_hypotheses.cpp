@@ -1,0 +1,164 @@
+// Hypotheses that a study declares.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "protocols/axes/axis_range.hpp"
+#include "protocols/reader/read_sections.hpp"
+#include "protocols/tasks/task.hpp"
+namespace tapstudy::protocols {
+namespace {
+bool compares_means(Claim claim) {
+  return claim == Claim::interaction || claim == Claim::equivalent;
+}
+
+std::vector<std::string> names_of_factors(const Protocol& protocol) {
+  std::set<std::string> names;
+  for (const Stimulus& stimulus : protocol.stimuli) {
+    for (const auto& [factor, level] : stimulus.factors) {
+      names.insert(factor);
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+// Whether its stimuli have all combinations of two levels or more of both factors.
+bool are_crossed(const Block& block, const Protocol& protocol,
+                 const std::vector<std::string>& factors) {
+  std::set<std::string> first;
+  std::set<std::string> second;
+  std::set<std::pair<std::string, std::string>> cells;
+  for (const std::string& name : block.stimuli) {
+    const auto& levels = protocol.stimulus(name).factors;
+    if (!levels.contains(factors[0]) || !levels.contains(factors[1])) {
+      return false;
+    }
+    first.insert(levels.at(factors[0]));
+    second.insert(levels.at(factors[1]));
+    cells.emplace(levels.at(factors[0]), levels.at(factors[1]));
+  }
+  return first.size() > 1 && second.size() > 1 && cells.size() == first.size() * second.size();
+}
+
+void read_interaction(MapReader& reader, const Protocol& protocol, const Block* block,
+                      Hypothesis& hypothesis) {
+  hypothesis.factors =
+      reader.words({"factors", "two, whose effects are expected to depend on one another"},
+                   "factor of a stimulus", names_of_factors(protocol));
+  reader.check_count("factors", hypothesis.factors, 2, 2, "an interaction is of two factors");
+  const bool is_known =
+      block != nullptr && hypothesis.factors.size() == 2 &&
+      std::ranges::all_of(block->stimuli, [&](const std::string& name) {
+        return std::ranges::find(protocol.stimuli, name, &Stimulus::name) != protocol.stimuli.end();
+      });
+  if (is_known && !are_crossed(*block, protocol, hypothesis.factors)) {
+    reader.reject("factors",
+                  "the block's stimuli are not all combinations of two levels or more of both");
+  }
+}
+
+void read_equivalence(MapReader& reader, const Protocol& protocol,
+                      const std::vector<std::string>& blocks, const Block* block,
+                      Hypothesis& hypothesis) {
+  reader.count_given({"to", "to_block"}, MapReader::Presence::required);
+  const std::vector<std::string> stimuli =
+      block != nullptr ? block->stimuli : stimulus_names(protocol);
+  if (reader.has("to_block")) {
+    hypothesis.other_block = reader.word(
+        {"to_block", "block that measures the same, to which this one is expected to be equal"},
+        "block", blocks);
+    reader.refuse("stimulus", "is for `to`: blocks are compared whole");
+  } else {
+    hypothesis.stimulus =
+        reader.word({"stimulus",
+                     "stimulus of the block that is expected to be chosen, or rated highest, or "
+                     "equal to `to`"},
+                    "stimulus of the block", stimuli);
+    hypothesis.other_stimulus =
+        reader.word({"to", "stimulus of the block to which the other is expected to be equal"},
+                    "stimulus of the block", stimuli);
+  }
+  constexpr double largest = 1e6;
+  hypothesis.within = reader.number(
+      {"within",
+       "the largest difference of means that is none: of shares of right answers (0.1), "
+       "steps of a rating or marks on its line; of thresholds the largest ratio (1.25)"},
+      Range::positive(largest));
+  if (!hypothesis.stimulus.empty() && hypothesis.stimulus == hypothesis.other_stimulus) {
+    reader.reject("to", "is the stimulus itself");
+  }
+  if (!hypothesis.other_block.empty() && hypothesis.other_block == hypothesis.block) {
+    reader.reject("to_block", "is the block itself");
+  }
+}
+
+// Blocks are compared by what they measure of a participant, also where procedures choose levels.
+void check_fits_task(MapReader& reader, const Hypothesis& hypothesis, const Block& block) {
+  const std::optional<Claim> claim = block.task->claim();
+  if (!hypothesis.other_block.empty()) {
+    if (claim != Claim::accuracy_above_chance && !block.adjustment) {
+      reader.reject("to_block", "blocks of this task have no value a participant to compare");
+    } else if (block.comparison && hypothesis.within <= 1.0) {
+      reader.reject("within", "is the largest ratio of thresholds, above 1");
+    }
+    return;
+  }
+  const bool fits = compares_means(hypothesis.claim)
+                        ? claim == Claim::accuracy_above_chance || claim == Claim::rated_highest
+                        : claim == hypothesis.claim;
+  if (!fits) {
+    reader.reject("claim", "does not fit the task of the block");
+  } else if (block.comparison) {
+    reader.reject("block",
+                  "has procedures: its threshold is estimated, and no claim is tested (but "
+                  "`equivalent` with `to_block`)");
+  }
+}
+
+void read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
+                     Protocol& protocol) {
+  Hypothesis hypothesis;
+  hypothesis.name = reader.name({"name", "short name of the hypothesis"});
+  hypothesis.statement = reader.text({"statement", "the hypothesis in words, for reports"});
+  hypothesis.block = reader.word({"block", "name of a block"}, "block", blocks);
+  hypothesis.claim = reader.one_of<Claim>(
+      {"claim",
+       "accuracy_above_chance for tasks with right answers, chosen_above_chance for choice and "
+       "paired, rated_highest for rating; interaction (effects of two factors on right answers or "
+       "ratings depend on one another) and equivalent (two stimuli, or two blocks, differ by no "
+       "more than a bound) for tasks with right answers and rating"},
+      {{"accuracy_above_chance", Claim::accuracy_above_chance},
+       {"chosen_above_chance", Claim::chosen_above_chance},
+       {"rated_highest", Claim::rated_highest},
+       {"interaction", Claim::interaction},
+       {"equivalent", Claim::equivalent}});
+  const Block* const found = protocol.find_block(hypothesis.block);
+  const Block* const block = found != nullptr && found->task != nullptr ? found : nullptr;
+  if (hypothesis.claim == Claim::interaction) {
+    read_interaction(reader, protocol, block, hypothesis);
+  } else if (hypothesis.claim == Claim::equivalent) {
+    read_equivalence(reader, protocol, blocks, block, hypothesis);
+  } else if (hypothesis.claim != Claim::accuracy_above_chance) {
+    hypothesis.stimulus = reader.word(
+        {"stimulus",
+         "stimulus of the block that is expected to be chosen, or rated highest, or equal to `to`"},
+        "stimulus of the block", block != nullptr ? block->stimuli : stimulus_names(protocol));
+  }
+  if (block != nullptr) {
+    check_fits_task(reader, hypothesis, *block);
+  }
+  protocol.hypotheses.push_back(std::move(hypothesis));
+}
+}  // namespace
+
+void read_hypotheses(MapReader& top, Protocol& protocol) {
+  std::vector<std::string> blocks;
+  std::ranges::transform(protocol.blocks, std::back_inserter(blocks), &Block::name);
+  top.list({"hypotheses", "declared before the study; reports test these as planned"},
+           MapReader::Presence::optional,
+           [&](MapReader& reader) { read_hypothesis(reader, blocks, protocol); });
+}
+}  // namespace tapstudy::protocols

@@ -58,6 +58,12 @@ bool do_skipped_trials_come_again(const Block& block) {
   return block.comparison.has_value();
 }
 
+Answers answers_of(const Block& block, const Protocol& protocol) {
+  Answers answers = block.task->answers(block, protocol);
+  answers.keys = block.keys;
+  return answers;
+}
+
 std::vector<std::string> all_presented(const Block& block) {
   std::vector<std::string> names = block.stimuli;
   const auto add = [&](const std::string& name) {

@@ -205,7 +205,8 @@ struct Block {
   std::optional<ValuesOnAxis> on_axis;
   std::optional<Modulus> modulus;
   std::optional<Adjustment> adjustment;
-  int alternatives{};  // presented in a trial, where the task leaves a choice
+  std::vector<std::string> keys;  // that answer, in the order of the options; empty: their places
+  int alternatives{};             // presented in a trial, where the task leaves a choice
   Presented presented{Presented::virtual_plates};
   std::optional<CatchTrials> catch_trials;
   std::optional<PracticeCriterion> criterion;
@@ -234,6 +235,8 @@ bool may_end_early(const Block& block);
 bool is_presented(const Block& block, const FilledForms& filled);
 // A procedure asked for that answer: of constant stimuli a level would lack one.
 bool do_skipped_trials_come_again(const Block& block);
+// The answers that its task takes, with the block's keys.
+Answers answers_of(const Block& block, const Protocol& protocol);
 // Its stimuli, those of its catch trials, and what is presented beside them.
 std::vector<std::string> all_presented(const Block& block);
 

@@ -55,6 +55,39 @@ void check_targets(MapReader& block_reader, const Protocol& protocol, const Bloc
 }
 
 namespace {
+// A letter each, which a keyboard of any language has: digits stand for places already, other signs
+// are the operator's (:), choose (=) and set (+, -).
+std::vector<std::string> letters() {
+  std::vector<std::string> all;
+  for (char letter = 'a'; letter <= 'z'; ++letter) {
+    all.emplace_back(1, letter);
+  }
+  return all;
+}
+
+void check_keys(MapReader& block_reader, const Protocol& protocol, const Block& block) {
+  const Answers answers = block.task->answers(block, protocol);
+  if (block.keys.empty()) {
+    return;
+  }
+  if (answers.kind != AnswerKind::option) {
+    block_reader.reject("keys", "are of options, of which this task has none to pick from");
+  } else if (block.keys.size() != answers.options.size()) {
+    block_reader.reject(
+        "keys", fmt::format("are {}, of {} answers", block.keys.size(), answers.options.size()));
+  }
+  const auto trials = block.task->trials(block, {});
+  for (const std::string& label : trials.empty() ? std::vector<std::string>{}
+                                                 : block.task->alternative_labels(trials.front())) {
+    if (std::ranges::any_of(block.keys, [&](const std::string& key) {
+          return label.size() == 1 && key.front() == label.front() - 'A' + 'a';
+        })) {
+      block_reader.reject("keys", fmt::format("'{}' is taken: it presents alternative {}",
+                                              static_cast<char>(label.front() - 'A' + 'a'), label));
+    }
+  }
+}
+
 using Presence = MapReader::Presence;
 constexpr double same_place_m = 1e-3;  // on the device
 
@@ -277,6 +310,11 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
       {{"virtual", Presented::virtual_plates}, {"real", Presented::real_plates}}, "virtual");
   block.explore = read_explore(reader, protocol, block.presented);
   read_between_trials(reader, block);
+  block.keys = reader.words(
+      {"keys",
+       "letters that answer, one for each answer in their order, at the terminal and on the page; "
+       "none that presents an alternative; unset: 1, 2, …"},
+      "letter", letters(), std::vector<std::string>{});
   block.allows_correction = reader.yes_or_no(
       {"correction", "the participant may correct the last answer during the next trial"}, false);
   block.presented_if = read_presented_if(reader, protocol);
@@ -299,6 +337,7 @@ void check_block(MapReader& reader, const Block& block, const Protocol& protocol
   } else if (block.task != nullptr && !block.stimuli.empty()) {
     check_constraints(reader, block);
     check_labels_differ(reader, protocol, block);
+    check_keys(reader, protocol, block);
     check_targets(reader, protocol, block);
     check_criterion(reader, block);
   }

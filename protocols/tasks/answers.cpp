@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/text/plain_text.hpp"
@@ -85,11 +86,27 @@ std::string with_decimal_point(std::string text) {
   return text;
 }
 
+std::optional<std::string> option_of_key(const std::string& text, const Answers& answers) {
+  std::string key = core::trimmed(text);
+  std::ranges::transform(key, key.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto found = std::ranges::find(answers.keys, key);
+  const auto option = static_cast<std::size_t>(found - answers.keys.begin());
+  return found == answers.keys.end() || option >= answers.options.size()
+             ? std::nullopt
+             : std::optional{answers.options[option].name};
+}
+
+std::string key_of_option(std::size_t option, const Answers& answers) {
+  return option < answers.keys.size() ? answers.keys[option] : std::to_string(option + 1);
+}
+
 std::optional<std::string> answer_in(const std::string& text, const Answers& answers) {
   const std::string word = core::trimmed(text);
   switch (answers.kind) {
-    case AnswerKind::option:
-      return option_at(word, answers.options);
+    case AnswerKind::option: {
+      const auto by_key = option_of_key(word, answers);
+      return by_key ? by_key : option_at(word, answers.options);
+    }
     case AnswerKind::number:
       return number_above_0(word);
     case AnswerKind::setting:
@@ -105,7 +122,9 @@ std::optional<std::string> answer_in(const std::string& text, const Answers& ans
 std::string expected_answer(const Answers& answers) {
   switch (answers.kind) {
     case AnswerKind::option:
-      return fmt::format("a number from 1 to {}", answers.options.size());
+      return answers.keys.empty()
+                 ? fmt::format("a number from 1 to {}", answers.options.size())
+                 : fmt::format("one of the keys {}", fmt::join(answers.keys, ", "));
     case AnswerKind::number:
       return fmt::format("a number above 0, such as 12 or 0.5, of at most {} characters",
                          max_characters);

@@ -87,7 +87,7 @@ results::JournalledAnswer answer_to(int trial, const AmendOptions& options, resu
 AnswerInView in_view(const results::JournalledAnswer& answer, const protocols::Protocol& protocol) {
   const protocols::Block& block = protocol.block(answer.trial.block);
   return {stored_trial(answer.trial, answer.alternatives, block),
-          block.task->answers(block, protocol), answer.response.response};
+          protocols::answers_of(block, protocol), answer.response.response};
 }
 
 struct CheckedStudy {

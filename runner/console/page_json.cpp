@@ -28,6 +28,7 @@ Json answers_json(const protocols::Answers& answers) {
   }
   return {{"kind", name(answers.kind)},
           {"options", labels},
+          {"keys", answers.keys},
           {"settings", answers.settings},
           {"low", answers.ends.low},
           {"high", answers.ends.high},

@@ -12,29 +12,33 @@ import { word } from "./words.js";
 
 const placeOf = (index) => String(index + 1);
 
-function optionCards(options, { group = newGroupName(), from = 0 } = {}) {
+// The key that picks an option: the study's own, else its place where that is one digit.
+const keyOf = (option, keys) => keys[option] ?? (option < 9 ? placeOf(option) : null);
+
+function optionCards(options, keys, { group = newGroupName(), from = 0 } = {}) {
   const cards = options.slice(from).map((label, index) => {
-    const place = placeOf(from + index);
-    return radioCard({ group, value: place, label, key: place.length === 1 ? place : null });
+    const option = from + index;
+    return radioCard({ group, value: placeOf(option), label, key: keyOf(option, keys) });
   });
   return el("div", { className: "options" }, ...cards);
 }
 
 // A card that stands beside its alternative.
-export const cardOf = ({ group, option, label }) => radioCard({
-  group, value: placeOf(option), label: word("this_one"), key: option < 9 ? placeOf(option) : null,
+export const cardOf = ({ group, option, label, keys }) => radioCard({
+  group, value: placeOf(option), label: word("this_one"), key: keyOf(option, keys),
   spokenLabel: `${word("this_one")}: ${label}`,
 });
 
 // The first so many options stand beside their alternatives already, in the same group.
-function optionField({ options, low, high }, { besideAlternatives, group }) {
+function optionField({ options, keys, low, high }, { besideAlternatives, group }) {
   const isScale = Boolean(low || high);
-  const cards = () => (isScale ? steps({ count: options.length, low, high }) : optionCards(options, { group, from: besideAlternatives }));
+  const cards = () => (isScale ? steps({ count: options.length, low, high, keys }) : optionCards(options, keys, { group, from: besideAlternatives }));
+  const numberOf = (key) => (keys.length === 0 ? key : String(keys.indexOf(key.toLowerCase()) + 1));
   return {
     body: besideAlternatives < options.length ? [cards()] : [],
     answerIn: pickedValue,
     missing: word("pick_first"),
-    press: (element, key) => pickNumber(element, key),
+    press: (element, key) => pickNumber(element, numberOf(key)),
   };
 }
 

@@ -4,10 +4,10 @@ import { el } from "./dom.js";
 import { cardOf } from "./answer_fields.js";
 import { word } from "./words.js";
 
-export function intervalCard({ label, option, group }) {
+export function intervalCard({ label, option, group, keys }) {
   const name = el("span", { className: "interval" }, word("interval_name", { label }));
   if (option < 0) return el("div", { className: "alternative only-felt" }, name);
-  return el("div", { className: "alternative" }, name, cardOf({ group, option, label }));
+  return el("div", { className: "alternative" }, name, cardOf({ group, option, label, keys }));
 }
 
 // The line that says what to do, and the button for all of them once more.

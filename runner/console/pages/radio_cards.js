@@ -16,13 +16,13 @@ function card({ type, group, value, label, key, spokenLabel }) {
 export const radioCard = (parts) => card({ type: "radio", ...parts });
 export const checkCard = (parts) => card({ type: "checkbox", ...parts });
 
-export function steps({ count, low, high }) {
+export function steps({ count, low, high, keys = [] }) {
   const group = newGroupName();
   const ends = { 1: low, [count]: high };
   const cards = Array.from({ length: count }, (_, index) => {
     const value = index + 1;
     const spokenLabel = ends[value] ? `${value} ${ends[value]}` : String(value);
-    return radioCard({ group, value, label: String(value), spokenLabel });
+    return radioCard({ group, value, label: String(value), key: keys[index], spokenLabel });
   });
   const row = el("div", { className: "steps" }, ...cards);
   // So that all steps stand in one row wherever they fit.
@@ -41,7 +41,7 @@ export function pickedValue(element) {
 
 // Picks the n-th answer, from 1; false if there is none.
 export function pickNumber(element, key) {
-  if (!/^[1-9]$/.test(key)) return false;
+  if (!/^[1-9]\d?$/.test(key)) return false;
   const input = element.querySelectorAll("input[type=radio]")[Number(key) - 1];
   if (!input) return false;
   input.focus();

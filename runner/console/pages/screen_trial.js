@@ -12,11 +12,11 @@ const letterOf = (label, index) =>
   /^[a-z]$/i.test(label) ? label.toLowerCase() : String.fromCharCode("a".charCodeAt(0) + index);
 
 // option: what choosing it answers; negative: it cannot be chosen, only felt.
-function alternativeCard({ label, index, option, group, feel }) {
+function alternativeCard({ label, index, option, group, keys, feel }) {
   const button = el("button", { type: "button", className: "feel", "aria-pressed": "false", onclick: () => feel(index) },
     el("span", {}, word("feel", { label })));
   if (option < 0) return el("div", { className: "alternative only-felt" }, button);
-  const choose = cardOf({ group, option, label });
+  const choose = cardOf({ group, option, label, keys });
   return el("div", { className: "alternative" }, button, choose);
 }
 
@@ -29,9 +29,9 @@ function hint(labels, { kind, modulus }) {
     el("span", { className: "keys" }, word("feel_keys", { keys }), kind === "setting" ? ` ${word("setting_keys", { label: labels.at(-1) })}` : ""));
 }
 
-function alternativeCards(labels, { kind, options }, group, makeCard) {
+function alternativeCards(labels, { kind, options, keys }, group, makeCard) {
   const optionOf = (label) => (kind === "option" ? options.indexOf(label) : -1);
-  const cards = labels.map((label, index) => makeCard({ label, index, option: optionOf(label), group }));
+  const cards = labels.map((label, index) => makeCard({ label, index, option: optionOf(label), group, keys }));
   return el("div", { className: "alternatives" }, ...cards);
 }
 

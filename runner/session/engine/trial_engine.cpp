@@ -101,7 +101,7 @@ TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, const Course& cour
           course.schedule.back().number,
           progress_at(trial, course.schedule, course.done, parts_.protocol),
           &block,
-          trial.task->answers(block, parts_.protocol),
+          protocols::answers_of(block, parts_.protocol),
           trial.task->alternative_labels(trial),
           correctable()};
 }

@@ -47,6 +47,15 @@ std::optional<std::string> order_after_equals(const std::string& word,
   return answer_in(places, answers);
 }
 
+// "   f: A. j: B."
+std::string by_keys(const protocols::Answers& answers) {
+  std::string all = "  ";
+  for (std::size_t i = 0; i < answers.options.size(); ++i) {
+    all += fmt::format(" {}: {}.", key_of_option(i, answers), answers.options[i].label);
+  }
+  return all;
+}
+
 bool is_order(const TrialPrompt& prompt) {
   return prompt.answers.kind == protocols::AnswerKind::order;
 }
@@ -75,6 +84,9 @@ std::optional<std::string> answer_typed(const std::string& line, const TrialProm
                ? std::optional{fmt::format("{}", control.setting() + 1)}
                : std::nullopt;
   }
+  if (auto by_key = option_of_key(line, prompt.answers)) {
+    return by_key;
+  }
   return prompt.answers_name_alternatives()
              ? labels_after_equals(upper_case_without_spaces(line), prompt.answers)
              : answer_in(line, prompt.answers);
@@ -97,6 +109,9 @@ std::string answer_instructions(const TrialPrompt& prompt) {
   if (!prompt.answers_name_alternatives()) {
     return "";
   }
+  if (!prompt.answers.keys.empty()) {
+    return by_keys(prompt.answers);
+  }
   return is_order(prompt)
              ? fmt::format("   = {}: your order, the first one first.",
                            fmt::join(prompt.alternative_labels, " "))
@@ -110,6 +125,9 @@ std::string expected_among_alternatives(const TrialPrompt& prompt) {
   }
   if (!prompt.answers_name_alternatives()) {
     return expected_answer(prompt.answers) + " to answer";
+  }
+  if (!prompt.answers.keys.empty()) {
+    return expected_answer(prompt.answers) + " to choose";
   }
   return is_order(prompt) ? "= and all labels in order" : "= and a label to choose it";
 }
@@ -178,7 +196,8 @@ std::string expected_correction(const protocols::Answers& answers) {
   }
   std::vector<std::string> numbers;
   for (const protocols::Option& option : answers.options) {
-    numbers.push_back(fmt::format("{} for {}", numbers.size() + 1, option.label));
+    numbers.push_back(
+        fmt::format("{} for {}", key_of_option(numbers.size(), answers), option.label));
   }
   return fmt::format("{}", fmt::join(numbers, ", "));
 }
@@ -202,10 +221,10 @@ void TerminalParticipant::get_ready(const TrialPrompt& prompt) {
   const std::vector<protocols::Option>& options = prompt.answers.options;
   const bool are_steps = !prompt.answers.ends.low.empty();
   for (std::size_t i = 0; !are_named && i < options.size(); ++i) {
-    if (are_steps) {  // which begin with their numbers
+    if (are_steps && prompt.answers.keys.empty()) {  // which begin with their numbers
       say("  {}\n", options[i].label);
     } else {
-      say("  {}  {}\n", i + 1, options[i].label);
+      say("  {}  {}\n", key_of_option(i, prompt.answers), options[i].label);
     }
   }
   if (prompt.answers.kind == protocols::AnswerKind::line) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "results/export/csv_file.hpp"
+#include "results/store/form_amendments.hpp"
 namespace tapstudy::results {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -222,8 +223,9 @@ struct Asked {
 std::vector<Asked> all_asked(Store& store) {
   std::vector<Asked> all;
   store.each_row(
-      "SELECT form, asked, participant_id, item, answer FROM form_answer JOIN v_sessions USING "
-      "(session_id) ORDER BY form_answer.rowid",
+      fmt::format("SELECT form, asked, participant_id, item, answer FROM {} JOIN v_sessions USING "
+                  "(session_id) ORDER BY form_answer.rowid",
+                  current_form_answer),
       [&](Statement& row) {
         auto of = std::ranges::find_if(all, [&](const Asked& asked) {
           return asked.form == row.text(0) && asked.place == row.text(1);
@@ -303,8 +305,10 @@ std::vector<ParticipantsColumn> participants_columns(Store& store,
            item.levels},
           {}};
       Statement row = store.query(
-          "SELECT participant_id, answer FROM form_answer JOIN session USING (session_id) "
-          "WHERE form = ? AND item = ? AND answer IS NOT NULL ORDER BY form_answer.rowid");
+          fmt::format("SELECT participant_id, answer FROM {} JOIN session USING (session_id) "
+                      "WHERE form = ? AND item = ? AND answer IS NOT NULL "
+                      "ORDER BY form_answer.rowid",
+                      current_form_answer));
       row.bind(form.name).bind(item.name);
       while (row.step()) {
         own.answers[row.text(0)] = row.text(1);

@@ -5,13 +5,14 @@
 
 #include "results/export/study_export.hpp"
 #include "results/export/table.hpp"
+#include "results/store/form_amendments.hpp"
 namespace tapstudy::results {
 namespace {
 struct Source {
   const char* name;
   const char* description;
   const char* columns;  // of the data dictionary
-  const char* from;     // what follows SELECT … FROM
+  const char* from;     // what follows SELECT … FROM; nullptr: current_form_answer
 };
 
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage): joined to literals
@@ -53,9 +54,7 @@ constexpr std::array sources{
            "session_event JOIN v_sessions USING (session_id) "
            "ORDER BY session_id, t_s, session_event.rowid"},
     Source{"questionnaires", "One row per item of a questionnaire.",
-           WHO "t_s form asked item answer",
-           "form_answer JOIN v_sessions USING (session_id) "
-           "ORDER BY session_id, t_s, form_answer.rowid"},
+           WHO "t_s form asked item answer amended amended_from", nullptr},
     Source{"operator_actions",
            "One row per action of the operator, and per correction by the participant (answers: "
            "given_by).",
@@ -87,8 +86,12 @@ Cell cell_of(Statement& row, int column, CellType type) {
 
 Table table_from(Store& store, const Source& source, std::vector<Column> columns,
                  const std::vector<std::string>& expressions) {
-  const std::string select =
-      fmt::format("SELECT {} FROM {}", fmt::join(expressions, ", "), source.from);
+  const std::string from = source.from != nullptr
+                               ? source.from
+                               : std::string{current_form_answer} +
+                                     " JOIN v_sessions USING (session_id) "
+                                     "ORDER BY session_id, t_s, form_answer.rowid";
+  const std::string select = fmt::format("SELECT {} FROM {}", fmt::join(expressions, ", "), from);
   return {source.name, source.description, columns, [&store, select, columns](const RowSink& sink) {
             store.each_row(select,
                            [&](Statement& statement) { sink(row_from(statement, columns)); });
@@ -111,7 +114,8 @@ std::string quoted(const std::string& text) {
   return literal + "'";
 }
 
-// Without those of groups where nobody is in one; likewise of planned sessions and changed texts.
+// Without those of groups where nobody is in one; likewise of planned sessions, changed texts and
+// corrected answers to questionnaires.
 std::vector<Column> columns_of(Store& store, const char* names) {
   std::vector<Column> columns = known_columns(names);
   const auto leave_out = [&](bool is_used, std::string_view begin) {
@@ -122,6 +126,7 @@ std::vector<Column> columns_of(Store& store, const char* names) {
   leave_out(store.has_groups(), "group_");
   leave_out(store.has_planned_sessions(), "planned_session");
   leave_out(store.has_changed_texts(), "protocol_text");
+  leave_out(!form_amendments(store).empty(), "amended");
   return columns;
 }
 

@@ -142,7 +142,9 @@ std::vector<Column> columns_of_sessions() {
       {"item", text, "", "Item of the questionnaire"},
       {"answer", text, "",
        "Answer: a step from 1, a mark from 0 (low) to 1 (high), a number, an option's name or text;"
-       " missing if left out"},
+       " missing if left out; as corrected"},
+      {"amended", boolean, "", "The operator corrected the answer (operator_actions: when)"},
+      {"amended_from", text, "", "The answer as given, where it was corrected; else missing"},
   };
 }
 

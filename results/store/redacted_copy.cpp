@@ -48,7 +48,12 @@ INSERT INTO form_answer SELECT session_id, t_s, form, asked, item,
     ELSE '(removed)' END
   FROM original.form_answer ORDER BY rowid;
 INSERT INTO operator_action SELECT action_id, session_id, t_s, action, number,
-  CASE WHEN detail = '' THEN '' ELSE '(removed)' END
+  CASE WHEN detail = '' THEN ''
+    WHEN action <> 'amend' THEN '(removed)'
+    WHEN (detail ->> '$.form', detail ->> '$.item') IN (SELECT form, item FROM temp.kept)
+      THEN detail
+    WHEN detail ->> '$.before' IS NULL THEN json_set(detail, '$.after', '(removed)')
+    ELSE json_set(detail, '$.before', '(removed)', '$.after', '(removed)') END
   FROM original.operator_action ORDER BY action_id;
 INSERT INTO trace_chunk SELECT trial_id, first_tick, ticks, codec, bytes
   FROM original.trace_chunk ORDER BY trial_id, first_tick;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "results/store/form_amendments.hpp"
+#include "results/store_error.hpp"
 #include "results/traces/trace_codec.hpp"
 namespace tapstudy::results {
 std::vector<AnswerRow> stored_answers(Store& store) {
@@ -93,7 +95,8 @@ std::vector<VisitedPosition> visited_positions(Store& store) {
 
 std::vector<FormAnswerRow> stored_form_answers(Store& store) {
   Statement row = store.query(
-      "SELECT session_id, t_s, form, asked, item, answer FROM form_answer ORDER BY rowid");
+      fmt::format("SELECT session_id, t_s, form, asked, item, answer FROM {} ORDER BY rowid",
+                  current_form_answer));
   std::vector<FormAnswerRow> answers;
   while (row.step()) {
     answers.push_back(
@@ -194,9 +197,10 @@ void add_masking(Store& store, ParticipantCourseRow& course) {
 }
 
 void add_form_items(Store& store, ParticipantCourseRow& course) {
-  Statement row = store.query(
-      "SELECT count(*), count(*) - count(answer) FROM form_answer "
-      "JOIN session USING (session_id) WHERE participant_id = ?");
+  Statement row =
+      store.query(fmt::format("SELECT count(*), count(*) - count(answer) FROM {} "
+                              "JOIN session USING (session_id) WHERE participant_id = ?",
+                              current_form_answer));
   row.bind(course.participant_id).step();
   course.form_items = row.small_integer(0);
   course.form_items_left_out = row.small_integer(1);

@@ -25,7 +25,7 @@ struct VisitedPosition {
 };
 std::vector<VisitedPosition> visited_positions(Store& store);
 
-// Answers to questionnaires in the order given.
+// Answers to questionnaires in the order given, as corrected.
 std::vector<FormAnswerRow> stored_form_answers(Store& store);
 // The text of the rig that each trial was presented with.
 void each_rig_of_trial(Store& store,

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "results/store/recorder.hpp"
 #include "results/store/store.hpp"
+#include "runner/commands/amend_form.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/operators/operator_desk.hpp"
@@ -101,6 +102,11 @@ CheckedStudy checked_study(const std::string& directory) {
 }
 
 void amend(const AmendOptions& options) {
+  if (corrects_form(options.action)) {
+    fmt::print("participant {}: {}\n", options.participant,
+               amend_form(options.directory, options.participant, options.action));
+    return;
+  }
   const OperatorCommand command = amendment_in(options.action);
   const CheckedStudy checked = checked_study(options.directory);
   const protocols::Protocol& protocol = checked.protocol;
@@ -131,8 +137,10 @@ void add_amend(CommandParser& line) {
   Command command = line.add("amend", "Add a note, a correction or an exclusion after a session");
   const auto options = std::make_shared<AmendOptions>();
   command.argument("directory", options->directory, "Directory of a study");
-  command.argument("action", options->action,
-                   "\"note TEXT\", \"correct @TRIAL ANSWER\", \"exclude REASON\" or \"include\"");
+  command.argument(
+      "action", options->action,
+      "\"note TEXT\", \"correct @TRIAL ANSWER\", \"correct FORM.ITEM ANSWER\", \"exclude "
+      "REASON\" or \"include\"");
   command.option("--participant", options->participant, "Participant's id", Need::required);
   command.on_run([options] { amend(*options); });
 }

@@ -11,8 +11,10 @@
 
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
+#include "protocols/form.hpp"
 #include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/schedule.hpp"
+#include "results/store/form_amendments.hpp"
 #include "runner/session/engine/alternative_rows.hpp"
 #include "runner/session/engine/session_states.hpp"
 #include "runner/session/operators/operator.hpp"
@@ -277,12 +279,54 @@ void check_states(Store& store, CheckedCourse& course) {
   }
 }
 
+// Empty: it corrects an answer that there is, from what that was to what can be answered.
+std::string objection_to(const results::FormAmendment& amendment,
+                         std::map<std::string, std::optional<std::string>>& answers,
+                         const Protocol& protocol) {
+  const auto held = answers.find(fmt::format("{} {} {} {}", amendment.session_id, amendment.form,
+                                             amendment.asked, amendment.item));
+  if (held == answers.end()) {
+    return "there is no answer to it";
+  }
+  if (held->second != amendment.before) {
+    return "the answer before it was another one";
+  }
+  held->second = amendment.after;
+  const auto form = protocol.forms.find(amendment.form);
+  if (form == protocol.forms.end()) {
+    return "";  // which is found elsewhere
+  }
+  const auto item =
+      std::ranges::find(form->second.items, amendment.item, &protocols::FormItem::name);
+  const bool is_allowed =
+      item == form->second.items.end() || wrong_with(*item, amendment.after).empty();
+  return is_allowed ? "" : "it is no answer that the item takes";
+}
+
+void check_form_amendments(Store& store, const Protocol& protocol, CheckedCourse& course) {
+  std::map<std::string, std::optional<std::string>> answers;
+  store.each_row(
+      "SELECT session_id, form, asked, item, answer FROM form_answer", [&](Statement& row) {
+        answers[fmt::format("{} {} {} {}", row.integer(0), row.text(1), row.text(2), row.text(3))] =
+            row.optional_text(4);
+      });
+  for (const results::FormAmendment& amendment : results::form_amendments(store)) {
+    const std::string wrong = objection_to(amendment, answers, protocol);
+    if (!wrong.empty()) {
+      course.wrong.push_back(fmt::format("correction of {} in session {}: {}",
+                                         quoted_name(amendment.form + "." + amendment.item),
+                                         amendment.session_id, wrong));
+    }
+  }
+}
+
 void check_actions(Store& store, CheckedCourse& course) {
   store.each_row("SELECT action, min(action_id) FROM operator_action GROUP BY action",
                  [&](Statement& row) {
                    const std::string action = row.text(0);
-                   if (std::ranges::find(operator_actions(), action, &ActionInfo::name) ==
-                       operator_actions().end()) {
+                   if (action != results::form_amendment_action &&
+                       std::ranges::find(operator_actions(), action, &ActionInfo::name) ==
+                           operator_actions().end()) {
                      course.wrong.push_back(fmt::format("action {}: {} is no action of an operator",
                                                         row.integer(1), quoted_name(action)));
                    }
@@ -297,6 +341,7 @@ CheckedCourse checked_course(Store& store, const Protocol& protocol) {
   check_trials(store, protocol, course);
   check_states(store, course);
   check_actions(store, course);
+  check_form_amendments(store, protocol, course);
   return course;
 }
 }  // namespace tapstudy::runner

@@ -17,6 +17,7 @@
 #include "protocols/schedule/schedule.hpp"
 #include "results/export/table.hpp"
 #include "results/rows.hpp"
+#include "results/store/form_amendments.hpp"
 #include "results/store/study_queries.hpp"
 #include "runner/session/engine/adaptive_blocks.hpp"
 #include "runner/session/engine/between_trials.hpp"
@@ -264,6 +265,33 @@ std::vector<std::string> deviations_of(results::Store& store, Mode mode) {
   return found;
 }
 
+// "P03: answer to 'age' of form 'about' corrected from 13 to 31"; free text is nobody's business.
+std::vector<std::string> amended_answers(results::Store& store, const protocols::Protocol& protocol,
+                                         const std::set<std::string>& participants) {
+  std::map<std::int64_t, std::string> people;
+  for (const results::SessionRow& session : store.sessions()) {
+    people.emplace(session.id, session.participant_id);
+  }
+  std::vector<std::string> found;
+  for (const results::FormAmendment& amendment : results::form_amendments(store)) {
+    const std::string& participant = people.at(amendment.session_id);
+    const auto form = protocol.forms.find(amendment.form);
+    const protocols::Form none;
+    const auto& items = (form == protocol.forms.end() ? none : form->second).items;
+    const auto item = std::ranges::find(items, amendment.item, &protocols::FormItem::name);
+    const bool is_text = item == items.end() || item->kind == protocols::ItemKind::text;
+    if (participants.contains(participant)) {
+      found.push_back(fmt::format(
+          "{}: answer to '{}' of form '{}' corrected{}", participant, amendment.item,
+          amendment.form,
+          is_text
+              ? ""
+              : fmt::format(" from {} to {}", amendment.before.value_or("none"), amendment.after)));
+    }
+  }
+  return found;
+}
+
 std::vector<analysis::VisitOrder> visit_orders(results::Store& store) {
   std::vector<analysis::VisitOrder> orders;
   for (const results::VisitedPosition& visit : results::visited_positions(store)) {
@@ -315,6 +343,8 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
   found.unfinished = unfinished(store, protocol, participants, without_part);
   found.excluded = excluded_of(excluded, found.sessions, mode);
   found.deviations = deviations_of(store, mode);
+  std::ranges::move(amended_answers(store, protocol, participants),
+                    std::back_inserter(found.deviations));
   for (const auto& [participant, answer] : without_part) {
     found.deviations.push_back(fmt::format("{} took no part: answered {}", participant, answer));
   }

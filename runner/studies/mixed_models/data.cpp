@@ -192,8 +192,9 @@ std::vector<std::string> predictors_in(const std::vector<CountedCell>& cells) {
 std::vector<results::Column> columns_of_data(const std::vector<std::string>& predictors) {
   using enum results::CellType;
   std::vector<results::Column> columns = results::known_columns("block");
-  columns.push_back({"kind", text, "",
-                     "right_or_wrong (outcome 1 or 0), steps (of a rating), ratio (a threshold, say)"});
+  columns.push_back(
+      {"kind", text, "",
+       "right_or_wrong (outcome 1 or 0), steps (of a rating), ratio (a threshold, say)"});
   columns.push_back(results::known_columns("participant_id").front());
   columns.push_back({"outcome", real, "", "The answer, or a participant's value"});
   columns.push_back({"count", integer, "", "How many answers the row stands for"});

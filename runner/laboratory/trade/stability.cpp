@@ -170,29 +170,40 @@ std::string described(const core::PlateModel& plate) {
                      rigid > 0 ? fmt::format(" and {} of the rigid body", rigid) : "");
 }
 
+// The hand taps and stays.
+void play(const Stage& stage, const core::VibratingPlate* plate, StabilityCase& played) {
+  const core::Technique penalty_alone{"penalty alone", {}};
+  core::TapRenderer renderer =
+      core::make_renderer(plate != nullptr ? plate_alone() : penalty_alone, stage.rendering,
+                          touched_shape(stage.plate.shape), plate);
+  TestTap tap = stage.tap;
+  tap.at_m << stage.point_m, top_m(stage.plate.shape, stage.point_m);
+  const LoopBehaviour seen = tap_and_stay(renderer, stage.hand, stage.rendering.dt_s, tap);
+  const bool has_missed = seen.is_finite && seen.impacts == 0 && stage.tap.speed_m_s > 0.0;
+  played.outcome = has_missed ? Outcome::refused : outcome_of(seen);
+  played.words += has_missed ? "the hand did not touch the body" : described(seen);
+}
+
 StabilityCase play(const std::string& property, double value, const Stage& stage,
                    const core::ProgressHook& progress) {
   StabilityCase played{property, value, Outcome::refused, {}};
   try {
-    std::optional<core::VibratingPlate> plate;
-    if (stage.has_vibration) {
-      core::PlateModel built = core::build_plate_model(stage.plate, progress);
-      if (stage.damping_ratio) {
-        built.modal.damping_ratio.setConstant(*stage.damping_ratio);
-      }
-      played.words = described(built);
-      plate.emplace(vibrating_plate(stage.plate.shape, std::move(built.modal)));
+    if (!stage.has_vibration) {
+      play(stage, nullptr, played);
+      return played;
     }
-    const core::Technique penalty_alone{"penalty alone", {}};
-    core::TapRenderer renderer =
-        core::make_renderer(plate ? plate_alone() : penalty_alone, stage.rendering,
-                            touched_shape(stage.plate.shape), plate ? &*plate : nullptr);
-    TestTap tap = stage.tap;
-    tap.at_m << stage.point_m, top_m(stage.plate.shape, stage.point_m);
-    const LoopBehaviour seen = tap_and_stay(renderer, stage.hand, stage.rendering.dt_s, tap);
-    const bool has_missed = seen.is_finite && seen.impacts == 0 && stage.tap.speed_m_s > 0.0;
-    played.outcome = has_missed ? Outcome::refused : outcome_of(seen);
-    played.words += has_missed ? "the hand did not touch the body" : described(seen);
+    core::PlateModel built = core::build_plate_model(stage.plate, progress);
+    played.words = described(built);
+    if (built.modal.frequency_hz.size() == 0) {
+      played.outcome = Outcome::untested;
+      played.words += fmt::format("none below {:g} Hz", stage.plate.band_limit_hz);
+      return played;
+    }
+    if (stage.damping_ratio) {
+      built.modal.damping_ratio.setConstant(*stage.damping_ratio);
+    }
+    const core::VibratingPlate plate = vibrating_plate(stage.plate.shape, std::move(built.modal));
+    play(stage, &plate, played);
   } catch (const core::ModelError& error) {
     played.words = error.what();
   } catch (const core::InvalidInput& error) {
@@ -268,6 +279,8 @@ std::string_view name(Outcome outcome) {
       return "persists";
     case Outcome::refused:
       return "refused";
+    case Outcome::untested:
+      return "nothing tested";
     case Outcome::failed:
       break;
   }

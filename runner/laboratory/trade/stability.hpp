@@ -34,6 +34,7 @@ enum class Outcome {
   dies_out,  // a second after the tap the force oscillation has practically decayed
   persists,  // sustained but bounded oscillation: no damping, or contact chatter
   refused,   // the model was rejected; the error states why
+  untested,  // the plate has no mode in the band: nothing of it swings
   failed     // not finite, or the plate gained energy between impacts
 };
 std::string_view name(Outcome outcome);

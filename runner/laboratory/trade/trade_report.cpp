@@ -82,7 +82,7 @@ void print_stability(const Stability& stability) {
   fmt::print("\nstability: the simulated hand rests on a penalty stiffness of up to {:.0f} N/m\n",
              stability.penalty_limit_n_per_m);
   for (const StabilityCase& one : stability.cases) {
-    fmt::print("  {:<26}{:>18.13g}  {:<8}  {}\n", one.property, one.value, name(one.outcome),
+    fmt::print("  {:<26}{:>18.13g}  {:<14}  {}\n", one.property, one.value, name(one.outcome),
                one.words);
   }
 }

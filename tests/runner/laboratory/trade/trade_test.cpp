@@ -295,6 +295,8 @@ TEST_CASE("trade finds what the elements, the band and the integrator cost in ac
   for (const auto& one : json["stability"]) {
     CAPTURE(one);
     CHECK(one["outcome"] != "FAILED");
+    CHECK((one["outcome"] == "nothing tested") ==
+          one["words"].get<std::string>().starts_with("0 modes"));
     if (one["property"] == "penalty_stiffness_n_per_m") {
       CHECK((one["outcome"] == "dies out") == (one["value"] < json["penalty_limit_n_per_m"]));
     }
@@ -302,6 +304,11 @@ TEST_CASE("trade finds what the elements, the band and the integrator cost in ac
       CHECK((one["outcome"] == "persists") == (one["value"] == 0.0));
     }
   }
+  // so light that its first mode is far above the band
+  CHECK(std::ranges::any_of(json["stability"], [](const auto& one) {
+    return one["property"] == "density_kg_per_m3" && one["value"] == 1.0 &&
+           one["outcome"] == "nothing tested";
+  }));
   for (const char* const file : {"trade.csv", "trade.json", "trade.svg", "stability.csv"}) {
     CHECK(std::filesystem::file_size(directory / ("trade/" + std::string{file})) > 100);
   }

@@ -45,7 +45,7 @@ struct SmallModel {
   core::SolvedBody body;
   core::ModalModel modal;
 };
-constexpr double density_kg_per_m3 = 4.0;
+constexpr double block_density_kg_per_m3 = 4.0;
 
 SmallModel small_model(int order) {
   SmallModel model;
@@ -102,7 +102,7 @@ TEST_CASE("a universal file holds nodes and elements as its format describes the
   const SmallModel model = small_model(order);
   const testing::TempDirectory directory;
   const std::string file = directory / "body.uff";
-  core::write_universal_file(model.body, model.modal, density_kg_per_m3, file);
+  core::write_universal_file(model.body, model.modal, block_density_kg_per_m3, file);
   const auto sets = data_sets_of(testing::contents(file));
   CHECK(whole(sets.find(164)->second[0], 0) == 1);  // SI
   check_nodes(sets, model.body.mesh);
@@ -129,7 +129,7 @@ TEST_CASE("a universal file holds each mode's frequency, damping and mass-normal
   const SmallModel model = small_model(1);
   const testing::TempDirectory directory;
   const std::string file = directory / "body.uff";
-  core::write_universal_file(model.body, model.modal, density_kg_per_m3, file);
+  core::write_universal_file(model.body, model.modal, block_density_kg_per_m3, file);
   const auto sets = data_sets_of(testing::contents(file));
   REQUIRE(sets.count(55) == 2);
   Eigen::Index mode = 0;
@@ -154,6 +154,7 @@ TEST_CASE("a universal file holds each mode's frequency, damping and mass-normal
       }
     }
   }
-  CHECK_THROWS_AS(core::write_universal_file(model.body, model.modal, density_kg_per_m3, file),
-                  core::InvalidInput);
+  CHECK_THROWS_AS(
+      core::write_universal_file(model.body, model.modal, block_density_kg_per_m3, file),
+      core::InvalidInput);
 }

@@ -210,20 +210,9 @@ void run_report(ReportOptions options) {
     write_files(options, summary);
   }
 }
-}  // namespace
-
-void add_report(CommandParser& line) {
-  Command command =
-      line.add("report", "Confusion matrix and statistics: terminal, HTML, JSON and CSV");
-  const auto options = std::make_shared<ReportOptions>();
-  command.arguments("directories", options->directories,
-                    "Directory of a study; several, if it was run on several machines");
-  command.list("--counts", options->counts,
-               "Instead of a study: a matrix, or tables with a row for each answer (CSV, also "
-               "PsychoPy's and jsPsych's)");
+// How to read tables of other programs.
+void add_table_options(Command& command, const std::shared_ptr<ReportOptions>& options) {
   analysis::AnswerColumns& columns = options->table.columns;
-  command.list("--compare", options->compared,
-               "Instead of a study: two of them, or two tables, and how they differ");
   command.option("--stimulus-column", columns.stimulus, "With --counts: which was presented");
   command.option("--response-column", columns.response, "With --counts: what was answered");
   command.option("--participant-column", columns.participant,
@@ -263,6 +252,21 @@ void add_report(CommandParser& line) {
   command.one_of(
       "--rows", options->rows, {"stimuli", "responses"},
       "With --counts: what the rows of a matrix stand for, if its header does not say it");
+}
+}  // namespace
+
+void add_report(CommandParser& line) {
+  Command command =
+      line.add("report", "Confusion matrix and statistics: terminal, HTML, JSON and CSV");
+  const auto options = std::make_shared<ReportOptions>();
+  command.arguments("directories", options->directories,
+                    "Directory of a study; several, if it was run on several machines");
+  command.list("--counts", options->counts,
+               "Instead of a study: a matrix, or tables with a row for each answer (CSV, also "
+               "PsychoPy's and jsPsych's)");
+  command.list("--compare", options->compared,
+               "Instead of a study: two of them, or two tables, and how they differ");
+  add_table_options(command, options);
   command.option("--out", options->out,
                  "Output directory; default: report in the study's own directory");
   command.one_of("--mode", options->mode, {"real", "pilot", "simulated"},

@@ -284,9 +284,9 @@ std::vector<std::string> amended_answers(results::Store& store, const protocols:
       found.push_back(fmt::format(
           "{}: answer to '{}' of form '{}' corrected{}", participant, amendment.item,
           amendment.form,
-          is_text
-              ? ""
-              : fmt::format(" from {} to {}", amendment.before.value_or("none"), amendment.after)));
+          is_text ? ""
+                  : fmt::format(" from {} to {}", amendment.before.value_or("no answer"),
+                                amendment.after)));
     }
   }
   return found;

@@ -261,9 +261,9 @@ std::string doubt_about(const ResponseMode& mode, const ResponseModes& all) {
     return "half of its peak lies outside the band";
   }
   const double step_hz = step_at(at_hz, hz);
-  constexpr double narrowest = 0.05;
+  constexpr double narrowest = 0.1;
   if (bandwidth_of(mode) < narrowest * step_hz) {
-    return fmt::format("its peak is narrower than a twentieth of the step of {:g} Hz", step_hz);
+    return fmt::format("its peak is narrower than a tenth of the step of {:g} Hz", step_hz);
   }
   for (const ResponseMode& other : all.modes) {
     if (is_remainder(mode, other)) {

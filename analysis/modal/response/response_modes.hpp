@@ -41,7 +41,7 @@ struct ResponseModes {
 // (residue_fit.hpp); those whose residues are not significant are dropped, the weakest first. A
 // mode is doubtful if the interval of its damping ratio reaches 0 or that of its frequency is wider
 // than a tenth of it, if half of its peak lies outside the band, if its half-power bandwidth is
-// below a twentieth of the step between two frequencies, or if it is a remainder of a stronger one:
+// below a tenth of the step between two frequencies, or if it is a remainder of a stronger one:
 // within their bandwidths, of its shape (a modal assurance above 0.9) and of less than a quarter of
 // its energy. A bandwidth below a step is remarked on. Throws InvalidInput as within and
 // fit_residues do.

@@ -92,7 +92,7 @@ void add_row(const BlockSummary& first, const BlockSummary& second, RetestTables
   const LimitsOfAgreement found = limits_of_agreement(pair.first, pair.second);
   Cell limits = limits_cell(found, of_first.is_ratio);
   if (are_at_an_end(pair, of_first.scale)) {
-    limits = nothing(limits_column(), "none");
+    limits = nothing(limits_column(), "no limits");
     tables.remarks.emplace_back(
         fmt::format("There are no limits of agreement of {}: all values are at the same end of the "
                     "scale, where no change can be seen.",

@@ -93,7 +93,7 @@ TEST_CASE("where all shares are at one end no change can be seen, and there are 
     blocks.push_back(of_shares);
   }
   const auto row = row_of(blocks);
-  CHECK(row[4].text == "none");
+  CHECK(row[4].text == "no limits");
   CHECK(row[4].values == std::vector<Value>(6));
   const auto remarks = retest_section(blocks, test_of_two_days)->remarks;
   REQUIRE(remarks.size() == 3);

@@ -58,7 +58,7 @@ TEST_CASE("the exported script finds what the report says, of all answers that c
   REQUIRE(testing::tapstudy({"export", study, "--out", exported}).exit_code == 0);
   const std::string counted =
       "FROM v_trials WHERE status = 'answered' AND NOT is_practice AND NOT is_catch";
-  CHECK(printed("python3 -c \"import pandas; d = pandas.read_csv('" + exported +
+  CHECK(printed("/usr/bin/python3 -c \"import pandas; d = pandas.read_csv('" + exported +
                 "/mixed_models_data.csv'); print(d['count'].sum(), "
                 "int((d['count'] * d.outcome).sum()), sep='|')\"") ==
         printed("sqlite3 '" + study + "/study.db' \"SELECT count(*), sum(is_correct) " + counted +

@@ -23,6 +23,7 @@ inline results::SessionRow session(const std::string& participant,
   row.seed = 0xfedcba9876543210ULL;  // does not fit a signed integer
   row.planned_order = "1 main 1 a\n";
   row.rate_hz = 1000.0;
+  row.started_utc = "2026-01-01T00:00:00Z";
   return row;
 }
 
@@ -102,7 +103,6 @@ inline void add_people(const std::string& directory) {
   results::SessionRow first = small_study::session(participant);
   first.participant_index = 0;
   first.rig_text = "device: simulated_hand\n";
-  first.started_utc = "2026-01-01T00:00:00Z";
   store.add_session(first);
   store.add_trial(trial(first.id, 1, "bare"));
   results::TrialRecord skipped = trial(first.id, 2, "bare");

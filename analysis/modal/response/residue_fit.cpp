@@ -260,8 +260,21 @@ class Evaluation {
   }
 
  private:
+  // The residual's values near a mode, less what the poles there take: two of each response, and
+  // two that all responses share.
+  double degrees_near(const std::vector<Eigen::Index>& near) const {
+    const double low_hz = responses_.frequency_hz[near.front()];
+    const double high_hz = responses_.frequency_hz[near.back()];
+    const auto poles = std::ranges::count_if(at_.poles(), [&](const Complex& pole) {
+      return damped_hz(pole) >= low_hz && damped_hz(pole) <= high_hz;
+    });
+    const double of_pole = 2.0 + 2.0 / static_cast<double>(coefficients_.cols());
+    return std::max(2.0,
+                    2.0 * static_cast<double>(near.size()) - of_pole * static_cast<double>(poles));
+  }
   // The variance of a real value of the residual near a mode.
-  double variance_near(const std::vector<Eigen::Index>& near, Eigen::Index response) const {
+  double variance_near(const std::vector<Eigen::Index>& near, double degrees,
+                       Eigen::Index response) const {
     const Eigen::Index lines = measured_.rows() / 2;
     double sum = 0.0;
     for (const Eigen::Index line : near) {
@@ -270,7 +283,7 @@ class Evaluation {
     }
     const double floor = least_noise * least_noise * measured_.col(response).squaredNorm() /
                          static_cast<double>(measured_.rows());
-    return std::max(sum / (2.0 * static_cast<double>(near.size())), floor);
+    return std::max(sum / degrees, floor);
   }
 
   void set_significance(Eigen::Index mode, double per_unit, ResidueFit& fit) {
@@ -279,6 +292,7 @@ class Evaluation {
     const Complex pole = fit.poles[static_cast<std::size_t>(mode)];
     const auto near = lines_near(responses_.frequency_hz, damped_hz(pole),
                                  bandwidths * bandwidth_hz(pole), fewest_lines);
+    const double degrees = degrees_near(near);
     const auto rows = at_.inverse_of_R().middleRows<2>(2 * mode);
     const Eigen::Matrix2d covariance = rows * rows.transpose();  // for a variance of 1
     const double determinant =
@@ -290,8 +304,10 @@ class Evaluation {
     double energy = 0.0;
     for (Eigen::Index i = 0; i < coefficients_.cols(); ++i) {
       const Eigen::Vector2d part = coefficients_.col(i).segment<2>(2 * mode);
-      const double variance = variance_near(near, i);
-      chi_squared += part.dot(information * part) / variance;
+      const double variance = variance_near(near, degrees, i);
+      // Chi-squared of two degrees of freedom has the tail exp(-x / 2), F of 2 and n degrees
+      // (1 + 2 F / n)^(-n / 2).
+      chi_squared += degrees * std::log1p(part.dot(information * part) / (variance * degrees));
       energy += (at_.basis().columns.middleCols<2>(2 * mode) * part).squaredNorm() /
                 measured_.col(i).squaredNorm();
       fit.residue_errors(mode, i) = per_unit * std::sqrt(variance * covariance.trace() / 2.0);

@@ -24,8 +24,8 @@ enum class Fitting { rough, complete };
 // each response, which the residual tells. Standard errors are the larger of the Cramer-Rao bound's
 // and of those that hold for noise which varies over frequency, is correlated between responses and
 // between two neighbouring lines (Newey & West 1987). A mode's significance is measured against the
-// residual near it, which is not taken to be below -100 dB of the response. Throws InvalidInput for
-// more unknowns than values.
+// residual near it, which is not taken to be below -100 dB of the response: the chi-squared as
+// improbable as its F. Throws InvalidInput for more unknowns than values.
 ResidueFit fit_residues(const FrequencyResponses& responses,
                         std::vector<std::complex<double>> poles, Fitting fitting);
 }  // namespace tapstudy::analysis

@@ -68,7 +68,8 @@ void read_equivalence(MapReader& reader, const Protocol& protocol,
       block != nullptr ? block->stimuli : stimulus_names(protocol);
   if (reader.has("to_block")) {
     hypothesis.other_block = reader.word(
-        {"to_block", "block that measures the same, to which this one is expected to be equal"},
+        {"to_block",
+         "block that measures the same, to which this one is expected to be equal; unset: `to`"},
         "block", blocks);
     reader.refuse("stimulus", "is for `to`: blocks are compared whole");
   } else {

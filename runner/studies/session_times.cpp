@@ -28,7 +28,7 @@ std::optional<std::time_t> begin_of(const results::SessionRow& session) {
 }  // namespace
 
 CheckedTimes checked_session_times(results::Store& store) {
-  constexpr double rounding_s = 2.0;  // begins are whole seconds
+  constexpr double begin_rounding_s = 2.0;  // begins are whole seconds
   CheckedTimes checked;
   const std::map<std::int64_t, double> lengths = lengths_of_sessions(store);
   struct Before {
@@ -50,7 +50,7 @@ CheckedTimes checked_session_times(results::Store& store) {
     const auto length = lengths.find(session.id);
     const double begin_s = static_cast<double>(*began);
     Before& last = before[session.participant_id];
-    if (last.session != nullptr && begin_s < last.end_s - rounding_s) {
+    if (last.session != nullptr && begin_s < last.end_s - begin_rounding_s) {
       checked.unlikely.push_back(fmt::format(
           "session {} of {} began at {}, {:.0f} s before session {} of the same participant was "
           "over: the clock was set back in between, or one of the two rows is wrong",

@@ -11,7 +11,7 @@ namespace tapstudy::analysis {
 std::vector<const ReportTable*> tables_shown(const ReportSection& section, bool ShownIn::*format) {
   std::vector<const ReportTable*> shown;
   for (const ReportTable& table : section.tables) {
-    if (table.shown_in.*format && !table.rows.empty()) {
+    if (table.shown_in.*format && !table.rows.empty() && !shown_columns(table).empty()) {
       shown.push_back(&table);
     }
   }

@@ -54,7 +54,7 @@ void write_sections_html(std::ostream& out, std::span<const ReportSection> secti
 void add_sections(nlohmann::ordered_json& json, const std::vector<ReportSection>& sections);
 // Those that are written as files of their own, TABLE.csv.
 std::vector<const ReportTable*> csv_tables(const std::vector<ReportSection>& sections);
-// Every table that people see of a section in this format.
+// Every table that people see of a section in this format: those with a row and a column for them.
 std::vector<const ReportTable*> tables_shown(const ReportSection& section, bool ShownIn::*format);
 // Adds the publications that the page cites in the section.
 void add_sources(std::set<core::Source>& sources, const ReportSection& section);

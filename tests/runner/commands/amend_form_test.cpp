@@ -15,12 +15,12 @@ std::string study_with_form(const TempDirectory& directory) {
       replaced(replaced(testing::contents(testing::shipped("paper/discrimination.yaml")),
                         "repetitions: 2", "repetitions: 1"),
                "\nblocks:",
-               "\nforms:\n  about:\n    items:\n"
-               "      - {name: age, kind: number, question: Age?, min: 18, max: 99, bids: age}\n"
-               "      - {name: held, kind: single_choice, question: Held?, options: [a, b]}\n"
-               "      - {name: which, kind: text, question: Which?, asked_if: {item: held, is: "
+               "\nforms:\n  about:\n    title: About you\n    items:\n"
+               "      - {name: age, kind: number, question: 'Age?', min: 18, max: 99, bids: age}\n"
+               "      - {name: held, kind: single_choice, question: 'Held?', options: [a, b]}\n"
+               "      - {name: which, kind: text, question: 'Which?', asked_if: {item: held, is: "
                "[a]}}\n"
-               "      - {name: remarks, kind: text, question: Else?, required: false}\n"
+               "      - {name: remarks, kind: text, question: 'Else?', required: false}\n"
                "forms_before: [about]\nblocks:"));
   const std::string study = directory / "study";
   const auto run =

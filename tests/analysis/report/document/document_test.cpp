@@ -51,6 +51,19 @@ TEST_CASE("every format of a table has the same values", "[analysis][tables]") {
   CHECK_THAT(formats.html, Contains("Of &lt;two&gt; people."));
 }
 
+TEST_CASE("a table without a column for people is in the files for programs alone",
+          "[analysis][tables]") {
+  BlockSummary summary{BlockDesign{}};
+  ReportTable table{"notes", "Notes", {column("who", "who"), column("", "note")}};
+  table.rows.push_back({{"", {Value{}}}, word("nobody")});
+  summary.results().tables.push_back(table);
+  const testing::Formats formats = testing::formats_of(summary);
+  CHECK(formats.json["notes"][0]["note"] == "nobody");
+  CHECK_THAT(formats.csv.at("notes.csv"), Contains("nobody"));
+  CHECK_THAT(formats.text + formats.html, !Contains("Notes"));
+  CHECK(tables_shown(summary.sections.front(), &ShownIn::latex).empty());
+}
+
 TEST_CASE("a table for LaTeX shows every character as itself", "[analysis][tables]") {
   ReportTable table{"t", "50 % of A_1", {column("who", "who"), column("n & m", "n")}};
   table.rows.push_back({word("\\input{x} #1 ~ a^b $5"), word("χ² 1–2")});

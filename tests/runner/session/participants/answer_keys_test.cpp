@@ -37,7 +37,7 @@ TEST_CASE("a key is one letter, stands once, and presents no alternative",
     CHECK_THAT(refusal_of(plates, std::string{"[f, j, d, "} + none + "]"),
                Contains("blocks[0].keys[3]"));
   }
-  CHECK_THAT(refusal_of("paper/reality_finger.yaml", "[a, j]"),
+  CHECK_THAT(refusal_of("paper/reality_finger.yaml", "[a, j, k]"),
              Contains("blocks[0].keys: 'a' is taken: it presents alternative A"));
 }
 

@@ -1,5 +1,8 @@
 #include "analysis/report/study/planned_comparisons.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include "analysis/report/summary.hpp"
 #include "analysis/statistics/population/planned_contrasts.hpp"
 #include "support/catch.hpp"
@@ -93,7 +96,7 @@ TEST_CASE("blocks are equivalent by ratios where they measure ratios",
   };
   add("first", {{"A", 0.10}, {"B", 0.20}, {"C", 0.30}, {"D", 0.40}});
   add("second", {{"A", 0.11}, {"B", 0.19}, {"C", 0.31}});
-  blocks.back()->personal->beyond["D"] = {0.5, INFINITY};
+  blocks.back()->personal->beyond["D"] = {0.5, std::numeric_limits<double>::infinity()};
   design.blocks.front().comparisons = {{{"same", "", ""}, {}, "", "second", 1.25}};
   add_planned_comparisons(design, {{"first", {}}}, blocks);
   const HypothesisResult& found = blocks.front()->hypotheses.front();

@@ -97,7 +97,7 @@ OrthonormalBasis::OrthonormalBasis(const Eigen::MatrixXd& A) {
   }
 }
 
-Eigen::MatrixXd OrthonormalBasis::inverse_of_R() const {
+Eigen::MatrixXd OrthonormalBasis::inverse_of_r() const {
   return inverse_of_upper(R);
 }
 }  // namespace tapstudy::analysis

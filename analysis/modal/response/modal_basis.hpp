@@ -31,6 +31,6 @@ struct OrthonormalBasis {
   Eigen::MatrixXd Q;
   Eigen::MatrixXd R;
   // R^-1, with 0 for what depends on others.
-  Eigen::MatrixXd inverse_of_R() const;
+  Eigen::MatrixXd inverse_of_r() const;
 };
 }  // namespace tapstudy::analysis

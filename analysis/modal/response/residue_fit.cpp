@@ -32,14 +32,14 @@ class Projection {
   const std::vector<Complex>& poles() const { return poles_; }
   const ModalBasis& basis() const { return basis_; }
   const Eigen::MatrixXd& residual() const { return residual_; }
-  const Eigen::MatrixXd& inverse_of_R() {
-    if (inverse_of_R_.size() == 0) {
-      inverse_of_R_ = orthonormal_.inverse_of_R();
+  const Eigen::MatrixXd& inverse_of_r() {
+    if (inverse_of_r_.size() == 0) {
+      inverse_of_r_ = orthonormal_.inverse_of_r();
     }
-    return inverse_of_R_;
+    return inverse_of_r_;
   }
   // Of the basis's columns, a column for each response.
-  Eigen::MatrixXd coefficients() { return inverse_of_R() * explained_; }
+  Eigen::MatrixXd coefficients() { return inverse_of_r() * explained_; }
   Eigen::MatrixXd fitted() const { return orthonormal_.Q * explained_; }
   double weighted_squares(const Eigen::VectorXd& weights) const {
     return residual_.colwise().squaredNorm() * weights;
@@ -58,7 +58,7 @@ class Projection {
   OrthonormalBasis orthonormal_;
   Eigen::MatrixXd explained_;
   Eigen::MatrixXd residual_;
-  Eigen::MatrixXd inverse_of_R_;
+  Eigen::MatrixXd inverse_of_r_;
 };
 
 // dH / d(Re p, Im p) of one response by the projected slopes: a 2 x 2 block a mode.
@@ -293,7 +293,7 @@ class Evaluation {
     const auto near = lines_near(responses_.frequency_hz, damped_hz(pole),
                                  bandwidths * bandwidth_hz(pole), fewest_lines);
     const double degrees = degrees_near(near);
-    const auto rows = at_.inverse_of_R().middleRows<2>(2 * mode);
+    const auto rows = at_.inverse_of_r().middleRows<2>(2 * mode);
     const Eigen::Matrix2d covariance = rows * rows.transpose();  // for a variance of 1
     const double determinant =
         covariance(0, 0) * covariance(1, 1) - covariance(0, 1) * covariance(1, 0);

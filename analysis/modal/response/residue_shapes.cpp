@@ -50,40 +50,57 @@ double phase_collinearity(const Eigen::VectorXcd& shape) {
                    : 1.0;
 }
 
+namespace {
+// Frequencies, in words, of the modes whose residues of one response are imaginary beyond doubt.
+struct SignsOfResidues {
+  std::vector<std::string> negative;
+  std::vector<std::string> positive;
+};
+
+SignsOfResidues signs_of_residues(const ResidueFit& fit, Eigen::Index response) {
+  constexpr double errors = 3.0;
+  SignsOfResidues signs;
+  for (std::size_t mode = 0; mode < fit.poles.size(); ++mode) {
+    const auto row = static_cast<Eigen::Index>(mode);
+    const Complex residue = fit.residues(row, response);
+    if (std::abs(residue.imag()) > errors * fit.residue_errors(row, response) &&
+        std::abs(residue.imag()) > std::abs(residue.real())) {
+      (residue.imag() < 0.0 ? signs.negative : signs.positive)
+          .push_back(fmt::format("{:.5g}", std::abs(fit.poles[mode]) / (2.0 * std::numbers::pi)));
+    }
+  }
+  return signs;
+}
+
+// Empty: all is as it must be.
+std::string remark_on_driving_point(const ResponsePair& places, const SignsOfResidues& signs) {
+  if (signs.positive.empty()) {
+    return "";
+  }
+  if (signs.negative.empty()) {
+    return fmt::format(
+        "driving point {}: motion and force have opposite signs in all modes (is one of the "
+        "sensors turned round?)",
+        name(places));
+  }
+  const bool is_positive_rare = signs.positive.size() <= signs.negative.size();
+  return fmt::format(
+      "driving point {}: the residues at {} Hz have another sign than those of the other modes, "
+      "which the motion where the force acts cannot have: is it the same place?",
+      name(places), fmt::join(is_positive_rare ? signs.positive : signs.negative, ", "));
+}
+}  // namespace
+
 void add_driving_point_remarks(const ResidueFit& fit, ResponseModes& found) {
   for (std::size_t pair = 0; pair < found.measured.pairs.size(); ++pair) {
     const ResponsePair& places = found.measured.pairs[pair];
-    if (places.response != places.reference) {
-      continue;
-    }
-    const auto column = static_cast<Eigen::Index>(pair);
-    std::vector<std::string> negative;
-    std::vector<std::string> positive;
-    for (std::size_t mode = 0; mode < fit.poles.size(); ++mode) {
-      const auto row = static_cast<Eigen::Index>(mode);
-      const Complex residue = fit.residues(row, column);
-      constexpr double errors = 3.0;
-      if (std::abs(residue.imag()) > errors * fit.residue_errors(row, column) &&
-          std::abs(residue.imag()) > std::abs(residue.real())) {
-        (residue.imag() < 0.0 ? negative : positive)
-            .push_back(fmt::format("{:.5g}", std::abs(fit.poles[mode]) / (2.0 * std::numbers::pi)));
+    if (places.response == places.reference) {
+      const std::string remark =
+          remark_on_driving_point(places, signs_of_residues(fit, static_cast<Eigen::Index>(pair)));
+      if (!remark.empty()) {
+        found.remarks.push_back(remark);
       }
     }
-    if (positive.empty()) {
-      continue;
-    }
-    if (negative.empty()) {
-      found.remarks.push_back(
-          fmt::format("driving point {}: motion and force have opposite signs in all modes (is "
-                      "one of the sensors turned round?)",
-                      name(places)));
-      continue;
-    }
-    const bool is_positive_rare = positive.size() <= negative.size();
-    found.remarks.push_back(fmt::format(
-        "driving point {}: the residues at {} Hz have another sign than those of the other modes, "
-        "which the motion where the force acts cannot have: is it the same place?",
-        name(places), fmt::join(is_positive_rare ? positive : negative, ", ")));
   }
 }
 }  // namespace tapstudy::analysis

@@ -201,6 +201,22 @@ std::string expected_correction(const protocols::Answers& answers) {
   }
   return fmt::format("{}", fmt::join(numbers, ", "));
 }
+
+// Empty where answers name alternatives, which have labels of their own.
+std::string options_in_lines(const TrialPrompt& prompt) {
+  if (prompt.answers_name_alternatives()) {
+    return "";
+  }
+  const protocols::Answers& answers = prompt.answers;
+  const bool have_numbers = !answers.ends.low.empty() && answers.keys.empty();  // steps of a scale
+  std::string lines;
+  for (std::size_t i = 0; i < answers.options.size(); ++i) {
+    lines += have_numbers
+                 ? fmt::format("  {}\n", answers.options[i].label)
+                 : fmt::format("  {}  {}\n", key_of_option(i, answers), answers.options[i].label);
+  }
+  return lines;
+}
 }  // namespace
 
 void TerminalParticipant::get_ready(const TrialPrompt& prompt) {
@@ -217,16 +233,7 @@ void TerminalParticipant::get_ready(const TrialPrompt& prompt) {
     say("  (to change your last answer, type correct and {})\n",
         expected_correction(prompt.previous->answers));
   }
-  const bool are_named = prompt.answers_name_alternatives();
-  const std::vector<protocols::Option>& options = prompt.answers.options;
-  const bool are_steps = !prompt.answers.ends.low.empty();
-  for (std::size_t i = 0; !are_named && i < options.size(); ++i) {
-    if (are_steps && prompt.answers.keys.empty()) {  // which begin with their numbers
-      say("  {}\n", options[i].label);
-    } else {
-      say("  {}  {}\n", key_of_option(i, prompt.answers), options[i].label);
-    }
-  }
+  say("{}", options_in_lines(prompt));
   if (prompt.answers.kind == protocols::AnswerKind::line) {
     say("  {}\n", expected_answer(prompt.answers));
   }

@@ -3,6 +3,7 @@
 #include <utf8cpp/utf8.h>
 
 #include <algorithm>
+#include <cctype>
 namespace tapstudy::core {
 namespace {
 bool is_control(char32_t character) {
@@ -55,5 +56,20 @@ std::string shortened(std::string_view text, std::size_t max_bytes) {
 std::string quoted_name(std::string_view name) {
   constexpr std::size_t longest = 60;
   return "'" + shortened(name, longest) + "'";
+}
+
+std::string shell_word(std::string_view text) {
+  const bool is_plain = std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view{"._-+/"}.find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain && !text.empty()) {
+    return std::string{text};
+  }
+  std::string quoted{"'"};
+  for (const char c : text) {
+    quoted += c == '\'' ? std::string{"'\\''"} : std::string{c};
+  }
+  return quoted + "'";
 }
 }  // namespace tapstudy::core

@@ -19,6 +19,8 @@ std::string cut_to(std::string_view text, std::size_t max_bytes);
 std::string shortened(std::string_view text, std::size_t max_bytes);
 // A name of unknown length in a message: in single quotes, shortened to 60 bytes.
 std::string quoted_name(std::string_view name);
+// The text as one word of a POSIX shell, in single quotes where it needs them.
+std::string shell_word(std::string_view text);
 
 // The whole text as a number, in any locale: "12", "-0.5", "1e9"; for floating point also "inf" and
 // "nan". No sign +, no blanks around it. Unset if it is anything else or out of the type's range.

@@ -153,16 +153,16 @@ bool is_closed(const TriangleSurface& surface) {
   const RepairTerms& terms = *request.terms;
   std::string advice;
   if (repair.holes.longest_m > hole_m) {
-    advice = fmt::format(fmt::runtime(terms.longest_hole), 1.01 * repair.holes.longest_m) +
-             " fills its longest hole, or ";
+    advice = fmt::format("{}{}{:.3g} fills its longest hole, or ", terms.longest_hole,
+                         terms.before_number, 1.01 * repair.holes.longest_m);
   }
   if (refusal.is_of_pieces) {
     advice += fmt::format("{} keeps one, or ", terms.largest_piece);
   }
   throw SurfaceFault{fmt::format(
-      "{}, also once it is repaired{} (try: {}{}, a new surface around all of it that bridges this "
-      "many metres)",
-      refusal.why, terms.without_result, advice, fmt::format(fmt::runtime(terms.wrap), wrap_m))};
+      "{}, also once it is repaired{} (try: {}{}{}{:.2g}, a new surface around all of it that "
+      "bridges this many metres)",
+      refusal.why, terms.without_result, advice, terms.wrap, terms.before_number, wrap_m)};
 }
 
 // Whether a wrap is mostly its own offset, as around a sheet: about twice that thick.
@@ -239,12 +239,9 @@ void simplify(const RepairRequest& request, SurfaceRepair& repair) {
 }
 [[noreturn]] void refuse_result(const std::string& why, const RepairRequest& request) {
   const RepairTerms& terms = *request.terms;
-  const std::string of_wrap = terms.wrap;
   const std::string advice =
-      request.max_triangles
-          ? fmt::format("a larger {}", terms.max_triangles)
-          : fmt::format("another {}, or {}", of_wrap.substr(0, of_wrap.find_first_of(": ")),
-                        terms.largest_piece);
+      request.max_triangles ? fmt::format("a larger {}", terms.max_triangles)
+                            : fmt::format("another {}, or {}", terms.wrap, terms.largest_piece);
   throw SurfaceFault{fmt::format("{}, once it is {}{} (try {})", why,
                                  request.max_triangles ? "simplified" : "wrapped",
                                  terms.without_result, advice)};

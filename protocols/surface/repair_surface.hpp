@@ -8,16 +8,16 @@
 namespace tapstudy::protocols {
 // How what a repair does is asked for, in what it says.
 struct RepairTerms {
-  const char* longest_hole;  // with the place of a number
+  const char* longest_hole;
+  const char* wrap;
+  const char* before_number;  // between one of these and its number
   const char* largest_piece;
-  const char* wrap;  // with the place of a number
   const char* max_triangles;
   const char* without_result;  // what a refusal adds
 };
 // Of `tapstudy repair`.
-inline constexpr RepairTerms option_terms{"--largest-hole {:.3g}", "--largest-piece",
-                                          "--wrap {:.2g}", "--max-triangles",
-                                          "; nothing is written"};
+inline constexpr RepairTerms option_terms{
+    "--largest-hole", "--wrap", " ", "--largest-piece", "--max-triangles", "; nothing is written"};
 
 struct RepairRequest {
   double join_share{1e-5};                 // of the size: corners no further apart are one

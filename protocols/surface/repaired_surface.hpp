@@ -5,8 +5,8 @@
 #include "protocols/surface/surface_file.hpp"
 namespace tapstudy::protocols {
 // Of a protocol's key `repair`.
-inline constexpr RepairTerms key_terms{"largest_hole_m: {:.3g}", "largest_piece: true",
-                                       "wrap_m: {:.2g}", "max_triangles", ""};
+inline constexpr RepairTerms key_terms{"largest_hole_m",      "wrap_m",        ": ",
+                                       "largest_piece: true", "max_triangles", ""};
 
 // A file's surface as its protocol asks for it to be repaired.
 struct AskedRepair {

@@ -12,7 +12,8 @@ struct Source {
   const char* name;
   const char* description;
   const char* columns;  // of the data dictionary
-  const char* from;     // what follows SELECT … FROM; nullptr: current_form_answer
+  const char* relation;
+  const char* rest;  // of the query: what is joined, and the order
 };
 
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage): joined to literals
@@ -28,43 +29,44 @@ constexpr std::array sources{
                "rate_hz device "
                "scheduler program_version git_hash compiler seed planned_order rig_text "
                "protocol_text doctor",
-           "v_sessions ORDER BY session_id"},
+           "v_sessions", "ORDER BY session_id"},
     Source{"trials", "One row per presentation of a trial.",
            WHICH_TRIAL
            "repetition stimulus response is_correct is_corrected first_response first_is_correct "
            "given_by confidence response_time_s time_from_first_contact_s duration_s "
            "first_contact_s contacts impacts late_impacts max_impact_speed_m_s ticks late_ticks "
            "skipped_ticks saturated_ticks dropped_samples lateness_p999_s worst_lateness_s fault",
-           "v_trials ORDER BY trial_id"},
+           "v_trials", "ORDER BY trial_id"},
     Source{"answers", "One row per answer as given, and one per correction.",
            "response_id " WHICH_TRIAL
            "stimulus response is_correct response_time_s time_from_first_contact_s confidence "
            "given_by is_correction supersedes is_current",
-           "v_answers ORDER BY response_id"},
+           "v_answers", "ORDER BY response_id"},
     Source{
         "visits",
         "One row each time that an alternative was switched to, until the next switch or the end "
         "of the trial.",
-        WHICH_TRIAL "visit position label stimulus begin_s end_s dwell_s",
-        "v_visits ORDER BY trial_id, visit"},
-    Source{"events", "One row per event of a trial.", WHICH_TRIAL "t_s kind value",
-           "event JOIN trial_context USING (trial_id) ORDER BY trial_id, t_s, event.rowid"},
+        WHICH_TRIAL "visit position label stimulus begin_s end_s dwell_s", "v_visits",
+        "ORDER BY trial_id, visit"},
+    Source{"events", "One row per event of a trial.", WHICH_TRIAL "t_s kind value", "event",
+           "JOIN trial_context USING (trial_id) ORDER BY trial_id, t_s, event.rowid"},
     Source{"session_events", "One row per change of a session's state.",
-           WHO "t_s state number detail",
-           "session_event JOIN v_sessions USING (session_id) "
+           WHO "t_s state number detail", "session_event",
+           "JOIN v_sessions USING (session_id) "
            "ORDER BY session_id, t_s, session_event.rowid"},
     Source{"questionnaires", "One row per item of a questionnaire.",
-           WHO "t_s form asked item answer amended amended_from", nullptr},
+           WHO "t_s form asked item answer amended amended_from", current_form_answer,
+           "JOIN v_sessions USING (session_id) ORDER BY session_id, t_s, form_answer.rowid"},
     Source{"operator_actions",
            "One row per action of the operator, and per correction by the participant (answers: "
            "given_by).",
-           "action_id " WHO "t_s action number detail",
-           "operator_action JOIN v_sessions USING (session_id) ORDER BY action_id"},
+           "action_id " WHO "t_s action number detail", "operator_action",
+           "JOIN v_sessions USING (session_id) ORDER BY action_id"},
 };
 
 constexpr const char* alternative_columns =
     WHICH_TRIAL "position label stimulus is_comparison visits total_dwell_s";
-constexpr const char* alternatives_from = "v_stimuli ORDER BY trial_id, position";
+constexpr const char* alternatives_order = "ORDER BY trial_id, position";
 #undef WHICH_TRIAL
 #undef WHO
 
@@ -86,12 +88,8 @@ Cell cell_of(Statement& row, int column, CellType type) {
 
 Table table_from(Store& store, const Source& source, std::vector<Column> columns,
                  const std::vector<std::string>& expressions) {
-  const std::string from = source.from != nullptr
-                               ? source.from
-                               : std::string{current_form_answer} +
-                                     " JOIN v_sessions USING (session_id) "
-                                     "ORDER BY session_id, t_s, form_answer.rowid";
-  const std::string select = fmt::format("SELECT {} FROM {}", fmt::join(expressions, ", "), from);
+  const std::string select = fmt::format("SELECT {} FROM {} {}", fmt::join(expressions, ", "),
+                                         source.relation, source.rest);
   return {source.name, source.description, columns, [&store, select, columns](const RowSink& sink) {
             store.each_row(select,
                            [&](Statement& statement) { sink(row_from(statement, columns)); });
@@ -144,7 +142,7 @@ Table alternatives_table(Store& store, const std::map<std::string, std::string>&
                     quoted(axis)));
   });
   const Source source{"alternatives", "A row for each of the stimuli presented in a trial.",
-                      alternative_columns, alternatives_from};
+                      alternative_columns, "v_stimuli", alternatives_order};
   return table_from(store, source, columns, expressions);
 }
 

@@ -1,7 +1,6 @@
 #include "runner/studies/simulated_study.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -9,13 +8,13 @@
 #include <iterator>
 #include <optional>
 #include <set>
-#include <system_error>
 #include <thread>
 #include <vector>
 
 #include "analysis/statistics/quantiles.hpp"
 #include "analysis/statistics/resampling/replicates.hpp"
 #include "core/error.hpp"
+#include "core/files/scratch_directory.hpp"
 #include "core/random/rng.hpp"
 #include "device/device.hpp"
 #include "protocols/schedule/groups.hpp"
@@ -33,15 +32,6 @@
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
-ScratchDirectory::ScratchDirectory(std::uint64_t seed)
-    : path_{std::filesystem::temp_directory_path() /
-            fmt::format("tapstudy-{}-{:x}", ::getpid(), seed)} {}
-
-ScratchDirectory::~ScratchDirectory() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 namespace {
 struct SimulatedSession {
   std::int64_t id{};
@@ -235,7 +225,7 @@ ResultOfDesign result_of(const Found& found) {
 analysis::Summary summary_of_one(const SimulatedDesign& design, std::size_t study,
                                  const protocols::Protocol& protocol, ModelLibrary& models) {
   const std::uint64_t seed = core::derived_seed(design.seed, core::Purpose::study, study);
-  const ScratchDirectory directory{seed};
+  const core::ScratchDirectory directory;
   simulate({.protocol_file = design.protocol_file,
             .directory = directory.path(),
             .participants = design.participants,

@@ -13,6 +13,7 @@
 #include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/rank_tests.hpp"
+#include "core/files/scratch_directory.hpp"
 #include "core/random/rng.hpp"
 #include "results/store/store.hpp"
 #include "results/store/study_queries.hpp"
@@ -158,7 +159,7 @@ struct Simulated {
 Predicted predicted(const Bench& bench, const Simulated& study, double noise_db) {
   protocols::Protocol protocol = study.protocol;
   protocol.simulation.observer.noise_db = noise_db;
-  const ScratchDirectory directory{bench.seed};
+  const core::ScratchDirectory directory;
   simulate({study.file, directory.path(), study.participants, bench.seed, false,
             fmt::format("{}, noise of {} dB: simulating {} participants", study.method, noise_db,
                         study.participants)},

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <system_error>
 
-#include "core/error.hpp"
 #include "core/files/output_files.hpp"
+#include "core/files/scratch_directory.hpp"
+#include "core/text/plain_text.hpp"
 #include "results/export/csv_file.hpp"
 #include "runner/studies/mixed_models/data.hpp"
 namespace tapstudy::runner {
@@ -19,41 +19,9 @@ using analysis::MixedModelRow;
 constexpr const char* results_file = "mixed_models.csv";
 constexpr const char* script_file = "mixed_models.R";
 
-// Of the temporary files; removed with all that is in it.
-class ScratchDirectory {
- public:
-  ScratchDirectory() {
-    std::error_code error;
-    std::string name = (fs::temp_directory_path(error) / "tapstudy-models-XXXXXX").string();
-    if (error || mkdtemp(name.data()) == nullptr) {
-      throw core::InvalidInput{name + ": cannot be made (mixed models are fitted there)"};
-    }
-    path_ = name;
-  }
-  ~ScratchDirectory() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchDirectory(const ScratchDirectory&) = delete;
-  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-// Within single quotes a shell takes every other character as it is.
-std::string shell_quoted(const std::string& text) {
-  std::string quoted{"'"};
-  for (const char c : text) {
-    quoted += c == '\'' ? std::string{"'\\''"} : std::string{c};
-  }
-  return quoted + "'";
-}
-
 // The exit code; one thread, so that a report takes no more of a shared machine than it did.
 int exit_code_of_r(const fs::path& directory) {
-  const std::string where = shell_quoted(directory.string());
+  const std::string where = core::shell_word(directory.string());
   const std::string line = fmt::format(
       "cd {} && OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 timeout -k 5 {} Rscript --vanilla {} "
       ">r.log 2>&1",
@@ -105,12 +73,13 @@ std::string mixed_models_script() {
 }
 
 std::vector<MixedModelRow> fit_mixed_models_in_r(const results::Table& data) {
-  const ScratchDirectory scratch;
-  core::write_new_file(scratch.path() / (data.name + ".csv"),
+  const core::ScratchDirectory scratch;
+  const fs::path directory = scratch.path();
+  core::write_new_file(directory / (data.name + ".csv"),
                        [&](std::ostream& out) { results::write_csv(out, data); });
-  core::write_new_file(scratch.path() / script_file, mixed_models_script());
-  const std::string trouble = trouble_of(exit_code_of_r(scratch.path()), scratch.path());
-  std::vector<MixedModelRow> rows = rows_of(scratch.path() / results_file);
+  core::write_new_file(directory / script_file, mixed_models_script());
+  const std::string trouble = trouble_of(exit_code_of_r(directory), directory);
+  std::vector<MixedModelRow> rows = rows_of(directory / results_file);
   if (!trouble.empty()) {
     rows.push_back({"", "", "", {}, {}, {}, {}, "", trouble});
   }

@@ -16,6 +16,17 @@ using namespace tapstudy::testing;
 namespace {
 const std::vector<Proportion> people{{2, 8}, {5, 8}, {3, 8}, {7, 8}, {4, 7},
                                      {1, 8}, {4, 8}, {6, 6}, {3, 8}, {5, 8}};
+
+// In R: k, how many were right, and t, of how many trials, of each person.
+std::string r_counts(const std::vector<Proportion>& of) {
+  std::vector<std::int64_t> right;
+  std::vector<std::int64_t> trials;
+  for (const Proportion& person : of) {
+    right.push_back(person.successes);
+    trials.push_back(person.trials);
+  }
+  return "k <- " + r_vector(right) + "; t <- " + r_vector(trials) + "; ";
+}
 }  // namespace
 
 TEST_CASE("participants' distribution is that of R's beta-binomial likelihood",
@@ -45,15 +56,9 @@ TEST_CASE("the interval over participants is where R's score of the mean is that
           "[analysis][participants]") {
   for (const std::vector<Proportion>& of :
        {people, {{3, 6}, {25, 30}, {28, 30}, {30, 30}}, {{14, 16}, {15, 16}, {13, 16}}}) {
-    std::vector<std::int64_t> right;
-    std::vector<std::int64_t> trials;
-    for (const Proportion& person : of) {
-      right.push_back(person.successes);
-      trials.push_back(person.trials);
-    }
     const auto r = r_numbers(
-        "k <- " + r_vector(right) + "; t <- " + r_vector(trials) +
-        "; p <- k / t; n <- length(p); b <- mean(p); phi <- max(var(p) / (b * (1 - b)), .05 * "
+        r_counts(of) +
+        "p <- k / t; n <- length(p); b <- mean(p); phi <- max(var(p) / (b * (1 - b)), .05 * "
         "mean(1 / t)); e <- function(m) (b - m)^2 / (phi * m * (1 - m) / n) - qt(.975, n - 1)^2;"
         "out(b, uniroot(e, c(1e-12, b), tol = 1e-14)$root, uniroot(e, c(b, 1 - 1e-12), tol = "
         "1e-14)$root)");
@@ -68,15 +73,9 @@ TEST_CASE("the interval over participants is where R's score of the mean is that
 TEST_CASE("near an end the interval is where R's likelihood and the spread say half each",
           "[analysis][participants]") {
   const std::vector<Proportion> near_end{{16, 16}, {30, 30}, {14, 16}, {6, 6}, {15, 16}, {16, 16}};
-  std::vector<std::int64_t> right;
-  std::vector<std::int64_t> trials;
-  for (const Proportion& person : near_end) {
-    right.push_back(person.successes);
-    trials.push_back(person.trials);
-  }
   const auto r = r_numbers(
-      "k <- " + r_vector(right) + "; t <- " + r_vector(trials) +
-      "; p <- k / t; n <- length(p); b <- mean(p); q <- qt(.975, n - 1)^2;"
+      r_counts(near_end) +
+      "p <- k / t; n <- length(p); b <- mean(p); q <- qt(.975, n - 1)^2;"
       "shown <- q * max(var(p) / (b * (1 - b)), .05 * mean(1 / t));"
       "l <- function(m, e) { v <- 1 / e^2 - 1; sum(lbeta(k + v * m, t - k + v * (1 - m)) - "
       "lbeta(v * m, v * (1 - m))) };"

@@ -21,6 +21,16 @@ Cell probability_or_nothing(const std::optional<double>& p) {
   return p ? probability(p) : Cell{"", {std::monostate{}}};
 }
 
+// As the script names it; people read "a × b" of an interaction, where a line may be broken.
+Cell term_cell(const std::string& term) {
+  std::string shown;
+  for (std::size_t i = 0; i < term.size(); ++i) {
+    const bool is_interaction = term[i] == ':' && i + 1 < term.size() && term[i + 1] != ' ';
+    shown += is_interaction ? std::string{" × "} : std::string{term[i]};
+  }
+  return {shown, {term}};
+}
+
 ReportTable table_of_models(const std::vector<MixedModelRow>& rows) {
   constexpr std::array headings{"block",     "",  "term", "estimate", "standard error",
                                 "statistic", "p", "test", ""};
@@ -29,7 +39,7 @@ ReportTable table_of_models(const std::vector<MixedModelRow>& rows) {
     table.columns.push_back(column(headings.at(i), keys_of_models.at(i)));
   }
   for (const MixedModelRow& row : rows) {
-    table.rows.push_back({word(row.block), word(row.model), word(row.term),
+    table.rows.push_back({word(row.block), word(row.model), term_cell(row.term),
                           number_or_nothing(row.estimate), number_or_nothing(row.standard_error),
                           number_or_nothing(row.statistic), probability_or_nothing(row.p),
                           word(row.test), word(row.note)});

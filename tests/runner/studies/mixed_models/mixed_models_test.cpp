@@ -82,8 +82,9 @@ TEST_CASE("the exported script finds what the report says, of all answers that c
                                           term.find(":factor_structure=") != std::string::npos);
   }
   CHECK(has_interaction);
-  CHECK_THAT(testing::contents(study + "/report/report.html"),
-             Contains("6 participants, ") && Contains("Mixed models"));
+  CHECK_THAT(
+      testing::contents(study + "/report/report.html"),
+      Contains("6 participants, ") && Contains("Mixed models") && Contains(" × factor_structure="));
   const auto verified = testing::tapstudy({"verify", study});
   INFO(verified.standard_output);
   CHECK(verified.exit_code == 0);

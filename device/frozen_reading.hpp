@@ -1,9 +1,32 @@
 #pragma once
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+
 #include "core/haptics/haptic_state.hpp"
 namespace tapstudy::device {
+// A reading as one number: two that differ in a bit have the same one about never.
+template <class Values>
+std::uint64_t fingerprint_of(const Values& values, std::uint64_t before = 1) noexcept {
+  constexpr std::uint64_t odd = 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio
+  constexpr int half = 32;
+  for (const auto value : values) {
+    before = (before ^ std::bit_cast<std::uint64_t>(value)) * odd;
+    before ^= before >> half;
+  }
+  return before;
+}
+
 // Finds a device that goes on replying while its position stands still to the bit: its encoders
-// have no supply, or the thread that reads them has died. A hand at rest, too, may leave every
-// counter as it is for a while, so that only two things are a fault.
+// have no supply, or the thread that reads them has died. So does a program that goes through old
+// samples again and again, such as two buffers of which neither is filled any more: a reading that
+// was there within the last 10 ms, to the bit, is no movement. A hand that trembles, at 8 to 12 Hz,
+// is back after 40 ms at the earliest.
+//
+// A hand at rest, too, may leave every counter as it is for a while, so that only two things are a
+// fault.
 //
 // Force has changed by 1 N or more since the position last did, for 50 ms. A hand gives: it is a
 // spring of some 400 N/m, and of 4000 N/m at most where it clenches the grip, so that 1 N displaces
@@ -26,9 +49,11 @@ namespace tapstudy::device {
 class FrozenReading {
  public:
   void forget() noexcept { *this = {}; }
-  // Once a reading, with the force commanded before it and the time since the reading before.
-  [[nodiscard]] bool judge(bool is_same, const core::Vec3& force_n, double elapsed_s) noexcept {
-    if (!is_same) {
+  // Once a reading, by its fingerprint, with the force commanded before it and the time since the
+  // reading before.
+  [[nodiscard]] bool judge(std::uint64_t reading, const core::Vec3& force_n,
+                           double elapsed_s) noexcept {
+    if (!was_there(reading, elapsed_s)) {
       since_change_n_ = force_n;
       changed_s_ = held_s_ = 0.0;
       return false;
@@ -41,10 +66,30 @@ class FrozenReading {
   }
 
  private:
+  struct Seen {
+    std::uint64_t reading{0};
+    double at_s{-std::numeric_limits<double>::infinity()};
+  };
+  static constexpr std::size_t remembered = 8;
+  static constexpr double memory_s = 0.01;
+  // Or is the one before, however long ago that was.
+  bool was_there(std::uint64_t reading, double elapsed_s) noexcept {
+    now_s_ += elapsed_s;
+    const auto known = std::ranges::find(seen_, reading, &Seen::reading);
+    const auto latest = std::ranges::max_element(seen_, {}, &Seen::at_s);
+    const bool is_known =
+        known != seen_.end() && (known == latest || known->at_s >= now_s_ - memory_s);
+    *(known != seen_.end() ? known : std::ranges::min_element(seen_, {}, &Seen::at_s)) = {reading,
+                                                                                          now_s_};
+    return is_known;
+  }
+
   static constexpr double min_change_n = 1.0;
   static constexpr double max_changed_s = 0.05;
   static constexpr double min_force_n = 0.5;
   static constexpr double max_held_s = 3.0;
+  std::array<Seen, remembered> seen_{};
+  double now_s_{0.0};
   core::Vec3 since_change_n_{core::Vec3::Zero()};
   double changed_s_{0.0};
   double held_s_{0.0};

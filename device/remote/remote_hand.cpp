@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <limits>
 #include <utility>
 namespace tapstudy::device {
@@ -10,7 +11,9 @@ namespace {
 constexpr double untold = std::numeric_limits<double>::quiet_NaN();
 constexpr int attempts = 40;
 constexpr int measured_round_trips = 200;
-constexpr int max_released_replies = 30;  // after a silence, until the other program holds again
+// After a silence, until the other program holds again.
+constexpr double max_released_s = 0.03;
+constexpr int max_released_replies = 30;
 constexpr std::chrono::milliseconds patience{50};  // timeout per attempt
 
 enum class Taken : std::uint8_t { yes, not_this, broken };
@@ -44,6 +47,7 @@ RemoteHand::RemoteHand(std::uint16_t port, RemoteLimits limits, std::unique_ptr<
   }
   max_reply_ = limits.max_reply;
   if (told) {
+    told_ = *told;
     introduction_ = description_in(*told);
     samples_ = SampleCheck{limits.max_sample_age_s, introduction_->rate_hz};
   }
@@ -156,13 +160,35 @@ TickFault RemoteHand::begin() noexcept {
   estimate_.forget();
   since_reply_s_ = since_sample_s_ = 0.0;
   is_holding_ = false;
-  released_replies_ = 0;
+  released_s_ = 0.0;
   detail_.missed_replies = 0;
-  return TickFault::none;
+  return version_ == 3 ? ask_who_it_is() : TickFault::none;
+}
+
+// The other program may have been started anew since the last trial, with another device: limits
+// and release of that one have not been looked at.
+TickFault RemoteHand::ask_who_it_is() noexcept {
+  constexpr int max_requests = 3;
+  wire::Introduction told;
+  TickFault fault = TickFault::no_reply;
+  for (int i = 0; i < max_requests && fault == TickFault::no_reply; ++i) {
+    fault = send(encoded(wire::Request{.asked = wire::Asked::introduction, .number = ++number_}));
+    if (fault == TickFault::none) {
+      fault = receive([&](std::span<const std::uint8_t> bytes) noexcept {
+        const auto found = decoded_introduction(bytes, number_);
+        told = found.value_or(told);
+        return found ? Taken::yes : Taken::not_this;
+      });
+    }
+  }
+  told.request = told_.request;
+  using Bytes = std::array<std::uint8_t, sizeof told>;
+  const bool is_same = std::bit_cast<Bytes>(told) == std::bit_cast<Bytes>(told_);
+  return fault == TickFault::none && !is_same ? TickFault::device_gone : fault;
 }
 
 // Between trials nobody asks, so that the first replies may report a release; not all of them.
-TickFault RemoteHand::fault_of_status(std::uint32_t status) noexcept {
+TickFault RemoteHand::fault_of_status(std::uint32_t status, double elapsed_s) noexcept {
   if ((status & wire::motors_on) == 0) {
     return TickFault::amplifier_off;
   }
@@ -170,8 +196,8 @@ TickFault RemoteHand::fault_of_status(std::uint32_t status) noexcept {
     return TickFault::not_homed;
   }
   const bool has_released = (status & wire::force_was_released) != 0;
-  released_replies_ = has_released ? released_replies_ + 1 : 0;
-  if (has_released && (is_holding_ || released_replies_ > max_released_replies)) {
+  released_s_ = has_released ? released_s_ + elapsed_s : 0.0;
+  if (has_released && (is_holding_ || released_s_ > max_released_s)) {
     return TickFault::force_released;
   }
   is_holding_ = is_holding_ || !has_released;
@@ -181,10 +207,10 @@ TickFault RemoteHand::fault_of_status(std::uint32_t status) noexcept {
 // Versions 1 and 2 do not number their samples: one that is repeated is known by its bits. So is,
 // in any version, that of encoders without supply.
 TickFault RemoteHand::fault_of_motion(double elapsed_s) noexcept {
-  const core::HandState last = std::exchange(last_, reply_.hand);
-  const bool is_same = last.position_m == reply_.hand.position_m &&
-                       (!is_velocity_measured_ || last.velocity_m_s == reply_.hand.velocity_m_s);
-  return reading_.judge(is_same, force_n_, elapsed_s) ? TickFault::position_frozen
+  const std::uint64_t position = fingerprint_of(reply_.hand.position_m);
+  const std::uint64_t reading =
+      is_velocity_measured_ ? fingerprint_of(reply_.hand.velocity_m_s, position) : position;
+  return reading_.judge(reading, force_n_, elapsed_s) ? TickFault::position_frozen
                                                       : velocity_.judge(reply_.hand, elapsed_s);
 }
 
@@ -203,7 +229,7 @@ TickFault RemoteHand::take_reply(double elapsed_s) noexcept {
   if (!is_velocity_measured_) {
     estimate_velocity(elapsed_s);
   }
-  TickFault fault = fault_of_status(reply_.status.value_or(wire::motors_on));
+  TickFault fault = fault_of_status(reply_.status.value_or(wire::motors_on), elapsed_s);
   if (fault == TickFault::none) {
     fault = of_sample;
   }

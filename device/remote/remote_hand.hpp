@@ -62,6 +62,7 @@ class RemoteHand final : public Device {
 
  private:
   bool greet(std::optional<wire::Introduction>& told);
+  core::TickFault ask_who_it_is() noexcept;
   core::TickFault send(std::span<const std::uint8_t> datagram) noexcept;
   core::TickFault send_force(RequestKind kind) noexcept;
   core::TickFault ask() noexcept;
@@ -70,7 +71,7 @@ class RemoteHand final : public Device {
   bool is_understood(std::span<const std::uint8_t> bytes,
                      std::optional<wire::Introduction>& told) noexcept;
   core::TickFault take_reply(double elapsed_s) noexcept;
-  core::TickFault fault_of_status(std::uint32_t status) noexcept;
+  core::TickFault fault_of_status(std::uint32_t status, double elapsed_s) noexcept;
   core::TickFault fault_of_motion(double elapsed_s) noexcept;
   void estimate_velocity(double elapsed_s) noexcept;
   int max_requests_of_a_stop() const noexcept;
@@ -82,12 +83,12 @@ class RemoteHand final : public Device {
   std::unique_ptr<DatagramPipe> pipe_;
   int version_{0};
   std::optional<RemoteDescription> introduction_;
+  wire::Introduction told_;  // likewise, as it came
   SampleCheck samples_;
   std::uint32_t number_{0};
   core::Vec3 force_n_{core::Vec3::Zero()};
   RemoteReply reply_;
   HeldHand held_;
-  core::HandState last_;
   FrozenReading reading_;
   ExertedForce exerted_;
   VelocityCheck velocity_;
@@ -95,8 +96,8 @@ class RemoteHand final : public Device {
   double since_reply_s_{0.0};
   double since_sample_s_{0.0};
   bool is_velocity_measured_{true};
-  bool is_holding_{false};   // a reply of this trial reported so
-  int released_replies_{0};  // of this trial, in a row
+  bool is_holding_{false};  // a reply of this trial reported so
+  double released_s_{0.0};  // so long every reply of this trial reported a release
   std::array<char, sizeof(wire::Reply::text)> text_{};
   DeviceDetail detail_;
 };

@@ -147,7 +147,7 @@ double SpidarG6::longest_step_m() const noexcept {
 }
 
 TickFault SpidarG6::fault_of_counters(double elapsed_s) noexcept {
-  if (counts_.judge(largest_step_ == 0, force_n_, elapsed_s)) {
+  if (counts_.judge(fingerprint_of(counters_.counts()), force_n_, elapsed_s)) {
     return TickFault::position_frozen;
   }
   return longest_step_m() > settings_.limits.max_string_speed_m_s * elapsed_s

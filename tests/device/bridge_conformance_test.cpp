@@ -2,17 +2,12 @@
 // bridge is a row: its device, which can be hung, frozen and unplugged. Time is real: what takes
 // long because the machine is busy is waited for.
 #include <fmt/format.h>
-#include <signal.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "device/remote/remote_hand.hpp"
@@ -24,10 +19,15 @@
 #include "support/example_bridge.hpp"
 #include "support/mapped_stand_in.hpp"
 #include "support/openhaptics/stand_in.hpp"
+#include "support/other_tapstudy.hpp"
 using namespace tapstudy;
 using core::TickFault;
 using core::Vec3;
 using device::StopOutcome;
+using testing::max_sample_age_s;
+using testing::OtherTapstudy;
+using testing::press;
+using testing::wait_until;
 
 namespace {
 constexpr double pressed_n = 2.0;
@@ -44,6 +44,10 @@ class BridgedDevice {
   virtual void hang() = 0;  // no sample is new
   virtual void freeze() = 0;
   virtual void unplug() = 0;
+  virtual void lose_position() = 0;  // it is not a number
+  virtual void answer_every_other() = 0;
+  // A device that numbers its samples, or measures its force.
+  virtual testing::MockBoard* numbering() { return nullptr; }
   // Who lets go where the bridge, or the device's own program, is killed or hangs; empty: the
   // device.
   virtual std::string without_bridge() const { return {}; }
@@ -62,6 +66,9 @@ class SerialBoardRow final : public BridgedDevice {
   void hang() override { board_.fall_silent(); }
   void freeze() override { board_.stand_still(); }
   void unplug() override { board_.unplug(); }
+  void lose_position() override { board_.lose_position(); }
+  void answer_every_other() override { board_.answer_every_other(); }
+  testing::MockBoard* numbering() override { return &board_; }
 
  private:
   testing::MockBoard board_;
@@ -84,6 +91,8 @@ class DhdRow final : public BridgedDevice {
   void hang() override { device().is_hung = true; }
   void freeze() override { device().tremor_m = 0.0; }
   void unplug() override { device().is_gone = true; }
+  void lose_position() override { device().is_lost = true; }
+  void answer_every_other() override { device().is_every_other = true; }
 
  private:
   testing::DhdStandIn& device() { return shared_.device(); }
@@ -100,6 +109,8 @@ class OpenHapticsRow final : public BridgedDevice {
   void hang() override { device().is_hung = true; }
   void freeze() override { device().tremor_m = 0.0; }
   void unplug() override { device().is_gone = true; }
+  void lose_position() override { device().is_lost = true; }
+  void answer_every_other() override { device().is_every_other = true; }
   std::string without_bridge() const override { return "the vendor's driver must let go"; }
   std::string when_hung() const override { return without_bridge(); }
 
@@ -121,6 +132,8 @@ class Inverse3Row final : public BridgedDevice {
     service_.end();
     is_unplugged_ = true;
   }
+  void lose_position() override { service_.lose_position(); }
+  void answer_every_other() override { service_.answer_every_other(); }
   std::string without_bridge() const override { return "the vendor's service must let go"; }
 
  private:
@@ -128,31 +141,12 @@ class Inverse3Row final : public BridgedDevice {
   bool is_unplugged_{false};
 };
 
-template <class Condition>
-void wait_until(const Condition& is_so) {
-  while (!is_so()) {
-    std::this_thread::sleep_for(std::chrono::microseconds{200});
-  }
-}
-
-// One tick. elapsed_s is what the checks are told, shorter than any tick here takes. After a fault
-// the next trial begins.
-TickFault press(device::RemoteHand& hand, double force_n, double elapsed_s = 1e-5) {
-  core::HandState state;
-  TickFault fault = hand.write({0.0, force_n, 0.0});
-  fault = fault == TickFault::none ? hand.read(state, elapsed_s) : fault;
-  if (fault != TickFault::none) {
-    static_cast<void>(hand.begin());
-  }
-  return fault;
-}
 void press_until(device::RemoteHand& hand, BridgedDevice& row, double force_n, double exerted_n) {
   while (std::abs(row.exerted_n() - exerted_n) > 1e-6) {
     static_cast<void>(press(hand, force_n));
   }
 }
 
-constexpr double max_sample_age_s = 1.0;  // a busy machine may keep anybody from the processor
 struct Bench {
   BridgedDevice& row;
   std::uint16_t port{testing::free_port()};
@@ -167,42 +161,6 @@ struct Pressed : Bench {
   device::RemoteHand hand;
 };
 
-// Another tapstudy, which presses whatever it is told, until it is killed.
-class OtherTapstudy {
- public:
-  explicit OtherTapstudy(std::uint16_t port) : child_{fork()} {
-    if (child_ == 0) {
-      prctl(PR_SET_PDEATHSIG, SIGKILL);
-      device::RemoteHand hand{port, {testing::unhurried, max_sample_age_s}};
-      while (true) {
-        static_cast<void>(press(hand, pressed_n));
-      }
-    }
-  }
-  ~OtherTapstudy() { end(); }
-  OtherTapstudy(const OtherTapstudy&) = delete;
-  OtherTapstudy& operator=(const OtherTapstudy&) = delete;
-  OtherTapstudy(OtherTapstudy&&) = delete;
-  OtherTapstudy& operator=(OtherTapstudy&&) = delete;
-  void end() {
-    if (child_ > 0) {
-      kill(child_, SIGKILL);
-      waitpid(child_, nullptr, 0);
-      child_ = -1;
-    }
-  }
-  void stop() {
-    int status = 0;
-    kill(child_, SIGSTOP);
-    REQUIRE(waitpid(child_, &status, WUNTRACED) == child_);
-    REQUIRE(WIFSTOPPED(status));
-  }
-  void go_on() { kill(child_, SIGCONT); }
-
- private:
-  pid_t child_;
-};
-
 std::string force(BridgedDevice& row) {
   Pressed pressed{row};
   press_until(pressed.hand, row, 300.0, row.max_force_n());
@@ -215,7 +173,7 @@ std::string force(BridgedDevice& row) {
 
 std::string tapstudy_killed(BridgedDevice& row) {
   Bench bench{row};
-  OtherTapstudy other{bench.port};
+  OtherTapstudy other{bench.port, pressed_n};
   wait_until([&] { return row.exerted_n() == pressed_n; });
   other.end();
   wait_until([&] { return row.exerted_n() == 0.0; });
@@ -224,7 +182,7 @@ std::string tapstudy_killed(BridgedDevice& row) {
 
 std::string tapstudy_stopped(BridgedDevice& row) {
   Bench bench{row};
-  OtherTapstudy other{bench.port};
+  OtherTapstudy other{bench.port, pressed_n};
   for (int i = 0; i < 2; ++i) {
     wait_until([&] { return row.exerted_n() == pressed_n; });
     other.stop();
@@ -290,6 +248,75 @@ std::string device_unplugged(BridgedDevice& row) {
   return found(row, &BridgedDevice::unplug, {});
 }
 
+std::string device_lost(BridgedDevice& row) {
+  return found(row, &BridgedDevice::lose_position, {});
+}
+
+// It may go on, or let go where it waits for the other half in vain.
+std::string every_other(BridgedDevice& row) {
+  Pressed pressed{row};
+  row.answer_every_other();
+  row.largest_n();
+  TickFault last = TickFault::none;
+  for (int i = 0; i < 400; ++i) {
+    last = press(pressed.hand, pressed_n);
+    CHECK(last != TickFault::position_frozen);
+    CHECK(last != TickFault::bad_reply);
+    const double exerted_n = row.exerted_n();
+    CHECK((exerted_n == pressed_n || exerted_n == 0.0));
+  }
+  CHECK(row.largest_n() <= pressed_n);
+  return "force as asked, or off";
+}
+
+std::string numbers_jump(BridgedDevice& row) {
+  if (row.numbering() == nullptr) {
+    return "does not apply: the bridge numbers the samples";
+  }
+  Pressed pressed{row};
+  row.numbering()->jump_in_numbers();
+  while (press(pressed.hand, pressed_n) != TickFault::bad_reply) {
+  }
+  while (pressed.hand.zero_force() != StopOutcome::confirmed) {
+  }
+  CHECK(row.exerted_n() == 0.0);
+  return "the reply was broken; force off";
+}
+
+constexpr const char* tells_no_force = "does not apply: the device measures no force";
+
+// Taps of 60 ms, told so many milliseconds late.
+std::string force_late(BridgedDevice& row) {
+  if (row.numbering() == nullptr) {
+    return tells_no_force;
+  }
+  constexpr int tap_ms = 60;
+  constexpr int longest_ms = 50;
+  for (const int late_ms : {0, 5, 15, longest_ms}) {
+    Pressed pressed{row};
+    row.numbering()->tell_force_late(static_cast<std::size_t>(late_ms));
+    bool is_believed = true;
+    for (int ms = 0; is_believed && (ms < 10 * tap_ms || late_ms == longest_ms); ++ms) {
+      is_believed = press(pressed.hand, ms / tap_ms % 2 == 0 ? pressed_n : 0.0, 1e-3) !=
+                    TickFault::force_not_followed;
+    }
+    CHECK(is_believed == (late_ms < longest_ms));
+  }
+  return "0, 5 and 15 ms are believed, 50 ms are a fault";
+}
+
+std::string never_lets_go(BridgedDevice& row) {
+  if (row.numbering() == nullptr) {
+    return tells_no_force;
+  }
+  Pressed pressed{row};
+  row.numbering()->hold();
+  CHECK(pressed.hand.zero_force() == StopOutcome::unconfirmed);
+  CHECK(pressed.hand.emergency_stop() == StopOutcome::unconfirmed);
+  CHECK(row.exerted_n() == pressed_n);
+  return "stop unconfirmed: force may be on";
+}
+
 // A hand that moves is no frozen one; one that does not move though force changes by 1 N is.
 std::string device_frozen(BridgedDevice& row) {
   Pressed pressed{row};
@@ -347,6 +374,11 @@ TEST_CASE(
                                       {"hung", device_hung},
                                       {"unplugged", device_unplugged},
                                       {"frozen position", device_frozen},
+                                      {"NaN", device_lost},
+                                      {"every second sample", every_other},
+                                      {"sample number jumps", numbers_jump},
+                                      {"force told late", force_late},
+                                      {"never lets go", never_lets_go},
                                       {"second sender", second_sender}};
   for (const BridgeCell& cell : cells) {
     fmt::print("  {}\n", cell.name);

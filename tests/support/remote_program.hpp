@@ -25,6 +25,8 @@ enum class RemoteTrouble {
   not_a_number,  // the position
   jump,          // of the position
   dead_thread,   // the newest sample stays the newest
+  old_sample,    // is told under new numbers
+  two_buffers,   // of old samples are told in turn, under new numbers
   samples_jump,  // their numbers
   samples_fall,  // likewise, to before
   too_old,       // the age of the sample
@@ -57,9 +59,10 @@ class RemoteProgram final : public device::DatagramPipe {
   RemoteTrouble trouble{RemoteTrouble::none};
   int version;
   Nanoseconds reply_delay{0};
+  Nanoseconds release_after{std::numeric_limits<Nanoseconds>::max()};  // so long a silence
   double gauge_lag_s{0.0};
   double height_m{0.01};
-  double tremor_m{0.0};  // to and fro with each reply
+  double tremor_m{0.0};  // 9 times a second
   double velocity_m_s{0.0};
   double exerted_n{0.0};
   int forces_since_trouble{0};
@@ -74,6 +77,12 @@ class RemoteProgram final : public device::DatagramPipe {
                                           .name = {"a mock"},
                                           .serial_number = {"M1"}};
 
+  // As where it is ended and started anew: samples are numbered anew.
+  void restart() {
+    sample_ = 0;
+    exerted_n = 0.0;
+    has_released_ = true;
+  }
   // The finger goes up so far and down again, 2.5 times a second, from where it is now on.
   void tap(double by_m) {
     tap_m_ = by_m;
@@ -90,6 +99,10 @@ class RemoteProgram final : public device::DatagramPipe {
       }
     }
     now_ = std::max(now_, moment);
+    if (now_ - heard_at_ > release_after) {
+      exerted_n = 0.0;
+      has_released_ = true;
+    }
   }
   // As the loopback does: a closed port is told of by what follows the first datagram.
   DatagramOutcome send(std::span<const std::uint8_t> out) noexcept override {
@@ -155,12 +168,14 @@ class RemoteProgram final : public device::DatagramPipe {
       answer(bytes_of(introduction));
       return;
     }
+    heard_at_ = now_;
     exert(at<double>(request, is_of_3 ? 24 : 20));
     const bool is_asked = kind == 1;
     const bool is_left_out = trouble == RemoteTrouble::every_other && is_asked && ++asked_ % 2 == 0;
     if (is_asked && trouble != RemoteTrouble::mute && !is_left_out) {
       const std::uint32_t told = number - (trouble == RemoteTrouble::old_number ? 1 : 0);
       answer(is_of_3 ? reply_of_3(told) : older_reply(told));
+      has_released_ = false;
     }
   }
   void exert(double force_n) {
@@ -183,7 +198,7 @@ class RemoteProgram final : public device::DatagramPipe {
   std::uint32_t status() const {
     using namespace device::wire;
     return (trouble == RemoteTrouble::no_power ? 0 : motors_on) |
-           (trouble == RemoteTrouble::releases ? force_was_released : 0) |
+           (trouble == RemoteTrouble::releases || has_released_ ? force_was_released : 0) |
            (trouble == RemoteTrouble::must_be_homed ? must_be_homed : 0);
   }
   double tap_phase() const {
@@ -195,12 +210,19 @@ class RemoteProgram final : public device::DatagramPipe {
     constexpr double phase_a_second = 2.0 * std::numbers::pi * 2.5;
     return velocity_m_s + 0.5 * tap_m_ * phase_a_second * std::sin(tap_phase());
   }
+  double trembling_m() const {
+    constexpr double tremor_a_second = 2.0 * std::numbers::pi * 9.0;
+    constexpr double between_buffers_m = 1e-5;
+    return trouble == RemoteTrouble::two_buffers ? (answered % 2 == 0 ? between_buffers_m : 0.0)
+           : trouble == RemoteTrouble::old_sample
+               ? 0.0
+               : tremor_m * std::sin(tremor_a_second * 1e-9 * static_cast<double>(now_));
+  }
   double told_height_m() const {
     const double tapping_m = 0.5 * tap_m_ * (1.0 - std::cos(tap_phase()));
     return trouble == RemoteTrouble::not_a_number ? nan
-           : trouble == RemoteTrouble::jump
-               ? 0.3
-               : height_m + tapping_m + (answered % 2 == 0 ? tremor_m : 0.0);
+           : trouble == RemoteTrouble::jump       ? 0.3
+                                                  : height_m + tapping_m + trembling_m();
   }
   device::wire::Vector told_force_n() {
     const double told_n = measured_n();
@@ -279,6 +301,8 @@ class RemoteProgram final : public device::DatagramPipe {
   Nanoseconds tapping_since_{0};
   int asked_{0};
   Nanoseconds now_{0};
+  Nanoseconds heard_at_{0};
+  bool has_released_{false};
   Nanoseconds free_at_{0};
   std::deque<Bytes> requests_;
   std::deque<Reply> replies_;

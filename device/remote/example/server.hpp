@@ -231,10 +231,13 @@ class Server {
     wire::Reply reply;
     device_.sample(reply);
     reply.request = number_;
-    if (!(reply.age_s <= max_sample_age_s)) {
+    const bool is_placed =
+        std::ranges::all_of(reply.position_m, [](double m) { return std::isfinite(m); });
+    if (!is_placed || !(reply.age_s <= max_sample_age_s)) {
       reply.status &= ~wire::motors_on;
-      put_text(reply.text,
-               reply.text[0] != '\0' ? reply.text.data() : "no samples from the device");
+      put_text(reply.text, reply.text[0] != '\0' ? reply.text.data()
+                           : is_placed           ? "no samples from the device"
+                                                 : "the device tells no position");
     }
     if ((reply.status & wire::motors_on) == 0) {
       exert({});

@@ -448,9 +448,9 @@ TEST_CASE(
   const bool is_alive = GENERATE(true, false);
   Stage stage{GENERATE(1, 2, 3)};
   stage.press();
+  stage.program.tremor_m = is_alive ? 1e-9 : 0.0;
   const std::int64_t before = stage.loop.loop->report().ticks;
   for (int tick = 0; tick < 20'000; ++tick) {
-    stage.program.height_m += is_alive ? 1e-9 * (tick % 2 == 0 ? 1 : -1) : 0.0;
     stage.loop.tick(1);
   }
   const device::LoopReport& report = stage.loop.loop->report();
@@ -458,14 +458,42 @@ TEST_CASE(
   CHECK(static_cast<double>(report.ticks - before) == Approx(is_alive ? 20'000 : 3000).margin(2));
 }
 
-TEST_CASE("a program that reports a released force in every reply is not believed",
-          "[device][safety][remote]") {
+TEST_CASE(
+    "a program that reports a released force in the first replies of a trial is believed for 30 ms "
+    "at any rate, and one that does so in every reply is not",
+    "[device][safety][remote]") {
+  for (const double rate_hz : {500.0, 1000.0, 8000.0}) {
+    Stage at_this_rate;
+    at_this_rate.program.trouble = RemoteTrouble::releases;
+    core::HandState state;
+    int replies = 0;
+    while (at_this_rate.hand.read(state, 1.0 / rate_hz) == TickFault::none) {
+      ++replies;
+    }
+    CHECK(replies == Approx(0.03 * rate_hz).margin(1.01));
+  }
   Stage stage;
   stage.program.trouble = RemoteTrouble::releases;
   CHECK(stage.hand.release_after(std::chrono::milliseconds{20}) ==
         device::RemoteHand::Release::always_reported);
   stage.loop.tick(200);
   CHECK(stage.loop.loop->report().stopped_by == TickFault::force_released);
+}
+
+TEST_CASE("another device that answers from the next trial on gets no force",
+          "[device][safety][remote]") {
+  Stage stage{3};
+  CHECK(stage.hand.begin() == TickFault::none);
+  SECTION("another serial number") {
+    stage.program.introduction.serial_number = {"M2"};
+    stage.loop.tick(100);
+    CHECK(stage.loop.loop->report().stopped_by == TickFault::device_gone);
+    CHECK(stage.program.exerted_n == 0.0);
+  }
+  SECTION("no answer") {
+    stage.program.trouble = RemoteTrouble::deaf;
+    CHECK(stage.hand.begin() == TickFault::no_reply);
+  }
 }
 
 TEST_CASE("a stop that a later reply contradicts is not confirmed", "[device][safety][remote]") {

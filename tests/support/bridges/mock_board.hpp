@@ -7,8 +7,10 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <limits>
 #include <string>
 #include <thread>
@@ -58,6 +60,13 @@ class MockBoard {
   // Noise on the line before each frame, and a frame in which one bit is wrong.
   void be_noisy() { is_noisy_ = true; }
   void fall_silent() { is_silent_ = true; }
+  void lose_position() { is_lost_ = true; }
+  void jump_in_numbers() { sample_ += 1'000'000; }
+  void answer_every_other() { answers_every_other_ = true; }
+  // Exerts, and tells, what it does now, whatever it is sent.
+  void hold() { is_holding_ = true; }
+  // The force that it tells is of so many samples ago.
+  void tell_force_late(std::size_t samples) { lag_ = samples; }
   void unplug() {
     if (obeying_.joinable()) {
       is_over_ = true;
@@ -110,10 +119,14 @@ class MockBoard {
   void send_sample() {
     constexpr float not_measured = std::numeric_limits<float>::quiet_NaN();
     Bytes content{1, 0};
-    add(content, ++sample_);
-    const float tremor_m = sample_ % 2 == 0 ? tremor_m_.load() : 0.0F;
-    for (const float value : {0.01F + tremor_m, 0.02F, 0.03F, not_measured, not_measured,
-                              not_measured, 0.0F, force_n_.load(), 0.0F}) {
+    const std::uint32_t sample = ++sample_;
+    add(content, sample);
+    told_n_.push_front(force_n_);
+    told_n_.resize(lag_ + 1);
+    const float position_m = is_lost_ ? not_measured : 0.02F;
+    const float tremor_m = tremor_m_ * std::sin(0.06F * static_cast<float>(sample));
+    for (const float value : {0.01F + tremor_m, position_m, 0.03F, not_measured, not_measured,
+                              not_measured, 0.0F, told_n_.back(), 0.0F}) {
       add(content, value);
     }
     add(content, std::uint16_t{5});
@@ -139,9 +152,14 @@ class MockBoard {
         float force_n = 0.0F;
         std::memcpy(&force_n, received.data() + 8, sizeof force_n);
         heard_at_ = Clock::now().time_since_epoch().count();
-        force_n_ = received[2] == 1 ? force_n : force_n_.load();
+        const bool is_force = received[2] == 1;
+        force_n_ = is_force && !is_holding_ ? force_n : force_n_.load();
         largest_n_ = std::max(largest_n_.load(), force_n_.load());
-        received[2] == 1 ? send_sample() : introduce();
+        if (!is_force) {
+          introduce();
+        } else if (!answers_every_other_ || ++asked_ % 2 == 0) {
+          send_sample();
+        }
       }
     }
   }
@@ -156,7 +174,13 @@ class MockBoard {
   std::atomic<bool> is_noisy_{false};
   std::atomic<bool> is_silent_{false};
   std::atomic<bool> is_over_{false};
-  std::uint32_t sample_{0};
+  std::atomic<bool> is_lost_{false};
+  std::atomic<bool> is_holding_{false};
+  std::atomic<bool> answers_every_other_{false};
+  std::atomic<std::size_t> lag_{0};
+  std::deque<float> told_n_;  // the newest first
+  int asked_{0};
+  std::atomic<std::uint32_t> sample_{0};
   std::thread obeying_;
 };
 }  // namespace tapstudy::testing

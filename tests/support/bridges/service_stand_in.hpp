@@ -1,11 +1,15 @@
 #pragma once
+#include <netinet/tcp.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -56,6 +60,19 @@ class ServiceStandIn {
   double largest_force_n() { return largest_n_.exchange(0.0); }
   void tremble() { tremor_m_ = 1e-4; }
   void stand_still() { tremor_m_ = 0.0; }
+  void lose_position() { is_lost_ = true; }
+  void answer_every_other() { answers_every_other_ = true; }
+  // A state that no force has asked for.
+  void tell_another_state() {
+    boost::asio::post(context_, [this] { tell_state(); });
+  }
+  // Of what was sent to the bridge its kernel has acknowledged all.
+  bool is_acknowledged() const {
+    tcp_info info{};
+    socklen_t size = sizeof info;
+    getsockopt(descriptor_, IPPROTO_TCP, TCP_INFO, &info, &size);
+    return info.tcpi_unacked == 0;
+  }
   std::atomic<bool> is_silent{false};
 
  private:
@@ -63,6 +80,7 @@ class ServiceStandIn {
   using Tcp = boost::asio::ip::tcp;
   using Session = boost::beast::websocket::stream<Tcp::socket>;
   void begin(Tcp::socket socket) {
+    descriptor_ = socket.native_handle();
     session_ = std::make_unique<Session>(std::move(socket));
     session_->accept();
     tell_state();
@@ -83,7 +101,7 @@ class ServiceStandIn {
       force_n_[1] = force.at("y").get<double>();
       force_n_[2] = force.at("z").get<double>();
       largest_n_ = std::max(largest_n_.load(), force_n_[2].load());
-      if (!is_silent) {
+      if (!is_silent && (!answers_every_other_ || ++asked_ % 2 == 0)) {
         tell_state();
       }
       hear_next();
@@ -91,12 +109,14 @@ class ServiceStandIn {
   }
   void tell_state() {
     Json devices = Json::array();
-    const double tremor_m = ++states_ % 2 == 0 ? tremor_m_.load() : 0.0;
+    const double tremor_m = tremor_m_ * std::sin(0.06 * ++states_);
     if (has_device_) {
-      devices.push_back({{"device_id", "4711"},
-                         {"state",
-                          {{"cursor_position", {{"x", 0.05 + tremor_m}, {"y", -0.20}, {"z", 0.18}}},
-                           {"cursor_velocity", {{"x", 0.1}, {"y", 0.2}, {"z", 0.3}}}}}});
+      devices.push_back(
+          {{"device_id", "4711"},
+           {"state",
+            {{"cursor_position",
+              {{"x", 0.05 + tremor_m}, {"y", is_lost_ ? std::nan("") : -0.20}, {"z", 0.18}}},
+             {"cursor_velocity", {{"x", 0.1}, {"y", 0.2}, {"z", 0.3}}}}}});
     }
     boost::system::error_code gone;
     session_->write(boost::asio::buffer(Json{{"inverse3", devices}}.dump()), gone);
@@ -110,6 +130,10 @@ class ServiceStandIn {
   std::array<std::atomic<double>, 3> force_n_{};
   std::atomic<double> largest_n_{0.0};
   std::atomic<double> tremor_m_{0.0};
+  std::atomic<bool> is_lost_{false};
+  std::atomic<bool> answers_every_other_{false};
+  int asked_{0};
+  int descriptor_{-1};
   int states_{0};
   std::thread thread_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "support/mapped_stand_in.hpp"
 namespace {
@@ -44,10 +45,11 @@ const char* dhdGetSystemName(char /*id*/) {
 }
 int dhdGetPosition(double* x_m, double* y_m, double* z_m, char /*id*/) {
   static int samples = 0;
-  *x_m = 0.01 + (++samples % 2 == 0 ? device().tremor_m.load() : 0.0);
-  *y_m = 0.02;
+  *x_m = 0.01 + device().tremor_m * std::sin(0.06 * ++samples);
+  *y_m = device().is_lost ? std::nan("") : 0.02;
   *z_m = 0.03;
-  return device().is_hung ? DHD_TIMEGUARD : outcome();
+  const bool is_old = device().is_hung || (device().is_every_other && samples % 2 == 0);
+  return is_old ? DHD_TIMEGUARD : outcome();
 }
 int dhdGetLinearVelocity(double* x_m_s, double* y_m_s, double* z_m_s, char /*id*/) {
   *x_m_s = *y_m_s = *z_m_s = 0.0;

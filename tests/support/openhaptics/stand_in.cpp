@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <stop_token>
 #include <thread>
 
@@ -19,6 +20,7 @@ HDSchedulerCallback scheduled = nullptr;
 void* scheduled_data = nullptr;
 std::jthread servo;
 int frames = 0;
+int periods = 0;
 }  // namespace
 
 HHD hdInitDevice(const char* /*name*/) {
@@ -41,7 +43,8 @@ void hdStartScheduler() {
   device().is_running = true;
   servo = std::jthread{[](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-      if (!device().is_hung) {
+      const bool is_left_out = device().is_every_other && ++periods % 2 == 0;
+      if (!device().is_hung && !is_left_out) {
         scheduled(scheduled_data);
       }
       std::this_thread::sleep_for(std::chrono::milliseconds{1});
@@ -57,8 +60,8 @@ void hdEndFrame(HHD /*id*/) {}
 void hdGetDoublev(HDenum parameter, HDdouble* values) {
   switch (parameter) {
     case HD_CURRENT_POSITION:
-      values[0] = 10.0 + (++frames % 2 == 0 ? 1e3 * device().tremor_m : 0.0);
-      values[1] = 20.0;
+      values[0] = 10.0 + 1e3 * device().tremor_m * std::sin(0.06 * ++frames);
+      values[1] = device().is_lost ? std::nan("") : 20.0;
       values[2] = 30.0;
       break;
     case HD_CURRENT_VELOCITY:

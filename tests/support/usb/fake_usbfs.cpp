@@ -57,6 +57,11 @@ void FakeUsbfs::send_back(Bytes reply, Trouble trouble) {
   switch (trouble) {
     case Trouble::missing:
       return;
+    case Trouble::every_other:
+      if (++asked_ % 2 == 0) {
+        return;
+      }
+      break;
     case Trouble::late:
       planned.due = now_() + delay_;
       break;

@@ -56,6 +56,7 @@ class FakeUsbfs {
     none,
     late,          // the reply comes after `delay`
     missing,       // there is no reply
+    every_other,   // likewise, to every second request
     short_reply,   // half of one
     stalled,       // -EPIPE
     protocol,      // -EPROTO
@@ -120,6 +121,7 @@ class FakeUsbfs {
   };
   std::deque<Reply> replies_;
   Bytes last_reply_;
+  int asked_{0};  // in Trouble::every_other
   Trouble planned_{Trouble::none};
   Trouble lasting_{Trouble::none};
   int exchanges_until_trouble_{0};

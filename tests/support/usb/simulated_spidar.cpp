@@ -31,6 +31,7 @@ core::SpidarCalibration SimulatedSpidar::calibration() {
 }
 
 void SimulatedSpidar::pass_a_tick() {
+  ++ticks_;
   if (is_rigid_) {
     return;
   }
@@ -47,7 +48,9 @@ void SimulatedSpidar::pass_a_tick() {
 
 std::array<std::int64_t, 8> SimulatedSpidar::counters() const {
   if (stopped_at_) {
-    return *stopped_at_;
+    std::array<std::int64_t, 8> all = *stopped_at_;
+    all.front() += ticks_ % 2 * between_samples_;
+    return all;
   }
   std::array<std::int64_t, 8> all{};
   const device::PerString length_m =

@@ -40,7 +40,7 @@ struct Rig {
   std::optional<double> vibration_band_hz;  // the highest frequency that the device renders
   std::shared_ptr<const core::DeviceResponse> vibration_response;  // null: not measured
   core::RealtimeRequest realtime;
-  int max_late_ticks_in_a_row{0};            // 0: any
+  double max_late_s{0.0};                    // while each tick is late; 0: any
   double max_stall_s{0.0};                   // between two ticks; 0: any
   double max_missed_share{1.0};              // of the periods of a second; 1: any
   std::optional<core::Placement> placement;  // instead of the protocol's

@@ -5,7 +5,7 @@ namespace tapstudy::device {
 using core::TickFault;
 namespace {
 constexpr double quiet_n = 0.2;
-constexpr int quiet_ticks_needed = 10;
+constexpr double quiet_time_needed_s = 0.01;
 }  // namespace
 
 ForceGate::ForceGate(const core::GateSettings& settings, double dt_s) noexcept
@@ -55,8 +55,8 @@ void ForceGate::stop() noexcept {
 
 void ForceGate::advance(double wanted_size_n) noexcept {
   if (state_ == State::armed) {
-    quiet_ticks_ = wanted_size_n < quiet_n ? quiet_ticks_ + 1 : 0;
-    state_ = quiet_ticks_ >= quiet_ticks_needed ? State::rendering : State::armed;
+    quiet_s_ = wanted_size_n < quiet_n ? quiet_s_ + dt_s_ : 0.0;
+    state_ = quiet_s_ > quiet_time_needed_s - 0.5 * dt_s_ ? State::rendering : State::armed;
   } else if (state_ == State::rendering && share_ < 1.0) {
     share_ = std::min(1.0, share_ + dt_s_ / settings_.force_rise_s);
     is_rising_again_ = is_rising_again_ && share_ < 1.0;

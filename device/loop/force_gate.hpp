@@ -10,7 +10,7 @@ struct PassedForce {
 };
 
 // The safety stage that every force passes before it reaches a device. It starts armed: the output
-// stays zero until the requested force has been small for some ticks, so that a finger resting
+// stays zero until the requested force has been small for 10 ms, so that a finger resting
 // inside a plate is not thrown out; then the force is ramped up. A non-finite value, excessive hand
 // speed and a position outside the workspace are faults and give zero force. Magnitude and rate are
 // always limited.
@@ -42,7 +42,7 @@ class ForceGate {
   core::GateSettings settings_;
   double dt_s_;
   State state_;
-  int quiet_ticks_{0};
+  double quiet_s_{0.0};
   double share_{0.0};
   bool is_rising_again_{false};
   core::Vec3 previous_n_{core::Vec3::Zero()};

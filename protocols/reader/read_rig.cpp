@@ -13,12 +13,12 @@ namespace {
 using Presence = MapReader::Presence;
 
 // A person's hand is on hardware; a simulated one may wait for any time (0).
-constexpr int max_late_ticks_of_hardware = 20;
+constexpr double max_late_of_hardware_s = 0.02;
 constexpr double max_stall_of_hardware_s = 0.01;
 constexpr double max_missed_share_of_hardware = 0.01;
 
 void read_loop(MapReader& top, Rig& rig) {
-  rig.max_late_ticks_in_a_row = rig.has_hardware ? max_late_ticks_of_hardware : 0;
+  rig.max_late_s = rig.has_hardware ? max_late_of_hardware_s : 0.0;
   rig.max_stall_s = rig.has_hardware ? max_stall_of_hardware_s : 0.0;
   rig.max_missed_share = rig.has_hardware ? max_missed_share_of_hardware : 1.0;
   top.map({"loop", "real-time settings requested for the haptic loop; the system may refuse them"},
@@ -32,11 +32,11 @@ void read_loop(MapReader& top, Rig& rig) {
             if (reader.has("cpu")) {
               realtime.cpu = reader.integer({"cpu", "processor to run on; unset: any"}, 0, 1023);
             }
-            rig.max_late_ticks_in_a_row =
-                reader.integer({"max_late_ticks_in_a_row",
-                                "more consecutive late ticks end the trial; 0, not with hardware: "
-                                "no limit; unset: 20 with hardware, else 0"},
-                               rig.has_hardware ? 1 : 0, 1'000'000, rig.max_late_ticks_in_a_row);
+            rig.max_late_s =
+                reader.number({"max_late_s",
+                               "ticks of which each is late for longer end the trial; 0, not with "
+                               "hardware: no limit; unset: 0.02 with hardware, else 0"},
+                              {0.0, 1000.0, !rig.has_hardware, true}, rig.max_late_s);
             rig.max_stall_s =
                 reader.number({"max_stall_s",
                                "a longer time between two ticks ends the trial; 0, not with "

@@ -196,17 +196,34 @@ TEST_CASE("a rig that asks for more than its device can do, by its own words, is
   CHECK_THAT(refused.standard_error, Contains(said));
 }
 
+TEST_CASE("what the system refuses is named once by run, and by doctor with what to do about it",
+          "[end_to_end]") {
+  const TempDirectory directory;
+  testing::write(
+      directory / "rig.yaml",
+      testing::contents(testing::shipped("rigs/simulated_hand.yaml")) + "\nloop: {cpu: 1023}\n");
+  const auto run = testing::tapstudy({"run", paper("discrimination.yaml"), "--participant", "P01",
+                                      "--out", directory / "out", "--rig", directory / "rig.yaml"},
+                                     "1\n2\n3\n4\n1\n2\n3\n4\n");
+  const std::string named = "the system refused processor 1023";
+  CHECK_THAT(run.standard_error, Contains(named));
+  CHECK(run.standard_error.find(named) == run.standard_error.rfind(named));
+  const auto doctor =
+      testing::tapstudy({"doctor", "--rig", directory / "rig.yaml", "--seconds", "0.1"});
+  CHECK_THAT(doctor.standard_output,
+             Contains("refused    processor 1023: another one for loop.cpu in the rig"));
+}
+
 TEST_CASE("a session runs on a device that another program drives, and can be replayed",
           "[end_to_end][threads][waits]") {
   const TempDirectory directory;
   const std::uint16_t port = testing::free_port();
   const testing::ExampleBridge bridge{port};
-  testing::write(
-      directory / "rig.yaml",
-      testing::replaced(testing::contents(testing::shipped("rigs/remote.yaml")),
-                        "port: 50607, max_reply_s: 0.003",
-                        fmt::format("port: {}, max_reply_s: 0.05", port)) +
-          "loop: {max_late_ticks_in_a_row: 1000000, max_stall_s: 0.1, max_missed_share: 1}\n");
+  testing::write(directory / "rig.yaml",
+                 testing::replaced(testing::contents(testing::shipped("rigs/remote.yaml")),
+                                   "port: 50607, max_reply_s: 0.003",
+                                   fmt::format("port: {}, max_reply_s: 0.05", port)) +
+                     "loop: {max_late_s: 1000, max_stall_s: 0.1, max_missed_share: 1}\n");
   // The bridge releases the force after 20 ms without a request, as on a busy machine: the session
   // is then interrupted, and resumed as people would.
   std::vector<std::string> command{
@@ -233,6 +250,7 @@ TEST_CASE("a session runs on a device that another program drives, and can be re
                       "block\nstill inhibited: 0"));
   CHECK_THAT(sql(directory, "SELECT doctor FROM session"),
              Contains(R"("sleep":"sleep inhibited")"));
+  CHECK(sql(directory, "SELECT DISTINCT doctor ->> '$.round_trip.count' FROM session") == "200\n");
   CHECK(sql(directory, "SELECT DISTINCT device FROM session") ==
         fmt::format("example finger, serial number 1, remote/3 at UDP port {}\n", port));
   CHECK(sql(directory, "SELECT count(*) FROM response") == "8\n");

@@ -28,8 +28,8 @@ inline void write_patient_spidar_study(const TempDirectory& directory) {
   write(directory / "rig.yaml",
         changed_file("rigs/spidar_g6.yaml", {{"force_rise_s: 0.5", "force_rise_s: 0.1"},
                                              {"fifo_priority: 80", "fifo_priority: 0"},
-                                             {"max_late_ticks_in_a_row: 20",
-                                              "max_late_ticks_in_a_row: 1000000, max_stall_s: 0.1, "
+                                             {"max_late_s: 0.02",
+                                              "max_late_s: 1000, max_stall_s: 0.1, "
                                               "max_missed_share: 1"},
                                              {"max_reply_s: 0.003}", "max_reply_s: 0.05}"}}));
 }

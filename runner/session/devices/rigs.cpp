@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.hpp"
@@ -14,6 +15,11 @@
 namespace tapstudy::runner {
 namespace {
 constexpr device::Nanoseconds max_heartbeat_gap = 100'000'000;
+
+// At least one, but for no time at all.
+int ticks_in(double seconds, double rate_hz) {
+  return seconds > 0.0 ? static_cast<int>(std::max(1LL, std::llround(seconds * rate_hz))) : 0;
+}
 
 std::vector<const protocols::RigDevice*> rig_devices() {
   return {device_kinds().begin(), device_kinds().end()};
@@ -78,7 +84,7 @@ device::LoopSettings loop_settings(const protocols::Protocol& protocol, const pr
   device::LoopSettings settings;
   settings.period = std::llround(1e9 / protocol.rate_hz);
   settings.gate = rig.gate;
-  settings.max_late_in_a_row = rig.max_late_ticks_in_a_row;
+  settings.max_late_in_a_row = ticks_in(rig.max_late_s, protocol.rate_hz);
   settings.max_stall = std::llround(1e9 * rig.max_stall_s);
   settings.max_missed_share = rig.max_missed_share;
   if (rig.has_hardware) {

@@ -42,6 +42,15 @@ TEST_CASE("a finger that rests inside a plate is not thrown out", "[device][safe
   CHECK(gate.state() == ForceGate::State::rendering);
 }
 
+TEST_CASE("a gate opens after 10 ms without a noticeable force, at any rate", "[device][safety]") {
+  const int rate_hz = GENERATE(500, 1000, 8000);
+  ForceGate gate{for_hardware(), 1.0 / rate_hz};
+  let_on(gate, rate_hz / 100 - 1);
+  CHECK(gate.state() == ForceGate::State::armed);
+  let_on(gate, 1);
+  CHECK(gate.state() == ForceGate::State::rendering);
+}
+
 TEST_CASE("force rises evenly once it is let on, and falls evenly when it is taken off",
           "[device][safety]") {
   ForceGate gate{for_hardware(), dt_s};

@@ -41,7 +41,11 @@ TEST_CASE("a rig with hardware brings its limits and its device's calibration", 
   CHECK(rig.gate.force_rise_s == 0.5);
   CHECK(rig.gate.limits.max_force_n == 5.0);
   CHECK(rig.realtime.fifo_priority == 80);
-  CHECK(rig.max_late_ticks_in_a_row == 20);
+  for (const double rate_hz : {500.0, 1000.0, 8000.0}) {
+    protocols::Protocol protocol;
+    protocol.rate_hz = rate_hz;
+    CHECK(runner::loop_settings(protocol, rig).max_late_in_a_row == 0.02 * rate_hz);
+  }
 }
 
 TEST_CASE("tapping points outside the frame of the strings are out of reach, whatever the rig says",

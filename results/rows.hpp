@@ -149,7 +149,7 @@ struct TickStatisticsRow {
   std::int64_t skipped{};
   std::int64_t saturated{};
   std::int64_t dropped_samples{};
-  double lateness_p999_s{};  // 99.9 % of the ticks were no later, to 19 %
+  double lateness_p999_s{};  // 99.9 % of the ticks were no later, to 2 %
   double worst_lateness_s{};
   std::string fault;  // empty: none
 };

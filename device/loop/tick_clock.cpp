@@ -32,12 +32,9 @@ Nanoseconds MonotonicClock::wait_until(Nanoseconds deadline) noexcept {
   return now();
 }
 
-namespace {
-constexpr double per_octave = 4.0;
-}
-
 void LatenessCount::add(Nanoseconds lateness) noexcept {
-  const double place = lateness < 1 ? 0.0 : per_octave * std::log2(static_cast<double>(lateness));
+  const double place =
+      lateness < 1 ? 0.0 : double{per_octave} * std::log2(static_cast<double>(lateness));
   ++in_class_[std::min(static_cast<std::size_t>(place), classes - 1)];
   ++count_;
   worst_ = std::max(worst_, lateness);
@@ -51,16 +48,38 @@ void LatenessCount::add(const LatenessCount& other) noexcept {
   worst_ = std::max(worst_, other.worst_);
 }
 
-Nanoseconds LatenessCount::quantile(double share) const noexcept {
-  const auto needed = static_cast<std::int64_t>(std::ceil(share * static_cast<double>(count_)));
+Nanoseconds LatenessCount::of_rank(std::int64_t rank) const noexcept {
   std::int64_t seen = 0;
   for (std::size_t i = 0; i < classes; ++i) {
     seen += in_class_[i];
-    if (seen >= needed && seen > 0) {
-      const double upper = std::exp2(static_cast<double>(i + 1) / per_octave);
+    if (seen >= rank && seen > 0) {
+      const double upper = std::exp2(static_cast<double>(i + 1) / double{per_octave});
       return std::min(worst_, static_cast<Nanoseconds>(std::ceil(upper)));
     }
   }
   return worst_;
+}
+
+Nanoseconds LatenessCount::quantile(double share) const noexcept {
+  return of_rank(static_cast<std::int64_t>(std::ceil(share * static_cast<double>(count_))));
+}
+
+// How many of n ticks are later than the quantile is binomial.
+LatenessCount::Interval LatenessCount::interval_of_quantile(double share) const noexcept {
+  constexpr double tail = 0.025;
+  const auto n = static_cast<double>(count_);
+  double log_chance = n * std::log(share);  // that so many are
+  double fewer = 0.0;                       // the chance that fewer are
+  std::int64_t fewest = 0;
+  std::int64_t most = 0;
+  for (std::int64_t later = 0; later < count_ && fewer < 1.0 - tail; ++later) {
+    const auto k = static_cast<double>(later);
+    fewest = fewer <= tail ? later : fewest;
+    most = later;
+    fewer += std::exp(log_chance);
+    log_chance += std::log((n - k) / (k + 1.0) * (1.0 - share) / share);
+  }
+  return {of_rank(count_ - most),
+          fewest > 0 ? std::optional{of_rank(count_ - fewest + 1)} : std::nullopt};
 }
 }  // namespace tapstudy::device

@@ -83,7 +83,7 @@ std::vector<Column> columns_of_conduct() {
       {"skipped_ticks", integer, "", "Ticks that were left out because they had been missed"},
       {"saturated_ticks", integer, "", "Ticks in which the limiter changed the force"},
       {"dropped_samples", integer, "", "Samples of the trace that were lost; 0 unless stated"},
-      {"lateness_p999_s", real, "s", "99.9 % of the ticks began no later than this, to 19 %"},
+      {"lateness_p999_s", real, "s", "99.9 % of the ticks began no later than this, to 2 %"},
       {"worst_lateness_s", real, "s", "Lateness of the latest tick"},
       {"fault", text, "", "Fault that ended the trial; empty: none"},
       {"t_s", real, "s",

@@ -39,7 +39,7 @@ PreflightReport run_preflight(const protocols::Rig& rig, SessionDevice& device,
   report.diagnosis.round_trip = device.round_trip();
   report.diagnosis.release = device.release();
   report.diagnosis.sleep = sleep;
-  for (const auto& refusal : report.diagnosis.idle.total.realtime.refusals) {
+  for (const auto& refusal : report.diagnosis.idle.realtime.refusals) {
     warn(fmt::format("the system refused {} (for what to do run `tapstudy doctor`)", refusal.what));
   }
   const Verdict verdict = verdict_of(report.diagnosis);
@@ -231,7 +231,7 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
   plan.participant_id = request.participant_id;
   plan.mode = request.mode;
   plan.device = preflight.device;
-  plan.scheduler = preflight.diagnosis.idle.total.realtime.text;
+  plan.scheduler = preflight.diagnosis.idle.realtime.text;
   plan.doctor = to_json(preflight.diagnosis);
   BegunSession session;
   // sessions begun at the same time must not get the same index

@@ -83,7 +83,7 @@ TEST_CASE("doctor tells how long the device takes to reply, and sends it no forc
   const auto result = laboratory({}, {"doctor", "--seconds", "0.1"});
   CHECK_THAT(result.standard_output,
              Contains("  on device ") && Contains("requests to the device"));
-  CHECK(laboratory.report["boards"][0]["requests"] == 99 + 3);  // and the guardian's
+  CHECK(laboratory.report["boards"][0]["requests"] == 100 + 3);  // and the guardian's
   CHECK(laboratory.report["boards"][0]["max_dac_counts"] == 0);
 }
 

@@ -169,8 +169,8 @@ ReportSection course_section(const Courses& participants,
   } else {
     section.remarks.emplace_back(
         "Lateness of a tick: 99.9 % of the ticks of a participant's worst trial were no later (to "
-        "19 %), and the "
-        "latest of all. Late impacts: those up to 5 ms after a late tick.");
+        "2 %, in older sessions to 19 %), and the latest of all. Late impacts: "
+        "those up to 5 ms after a late tick.");
   }
   return section;
 }

@@ -3,6 +3,7 @@
 
 #include "core/error.hpp"
 #include "core/haptics/haptic_state.hpp"
+#include "device/device.hpp"
 #include "protocols/form.hpp"
 #include "runner/console/console_server.hpp"
 #include "runner/console/operator_view.hpp"
@@ -263,7 +264,7 @@ runner::DeskView desk_with(const protocols::Block& block) {
   return desk;
 }
 
-std::string status(bool is_blind) {
+std::string status(bool is_blind, runner::ForceState force = runner::ForceState::on) {
   protocols::Block block;
   block.name = "control";
   runner::SessionInView session;
@@ -274,7 +275,9 @@ std::string status(bool is_blind) {
   session.state = "exploring";
   session.has_participant_page = true;
   session.masking = runner::MaskingInView{true, -20.0, 3};
-  return runner::status_text(session, desk_with(block), {12345, 2, 4});
+  auto desk = desk_with(block);
+  desk.force = force;
+  return runner::status_text(session, desk, {12345, 2, 4});
 }
 }  // namespace
 
@@ -286,6 +289,11 @@ TEST_CASE("the operator's terminal says what the operator's page shows", "[runne
                            "masking noise: playing, -20.0 dB FS, 3 underruns"}) {
     CHECK_THAT(text, Contains(part));
   }
+}
+
+TEST_CASE("a force that nobody confirmed to be off is never called off", "[runner][console]") {
+  const std::string text = status(false, runner::ForceState::unknown);
+  CHECK_THAT(text, Contains(device::force_may_be_on) && !Contains("force off"));
 }
 
 TEST_CASE("a blind operator's terminal names no stimulus", "[runner][console]") {

@@ -266,6 +266,17 @@ while at_s := lsl.lsl_pull_sample_d(forces, force, 3, 1.0, ctypes.byref(error)):
     print("force", repr(at_s), *map(repr, force), sep="\t")
 )py";
 
+// What went to a stand-in for the library, and what it was told of the streams.
+testing::ProgramResult session_with_lsl(const TempDirectory& directory, const char* lsl) {
+  std::filesystem::create_symlink(testing::lsl_stand_in(), directory / "liblsl.so.2");
+  std::vector<std::string> line{"/usr/bin/env", "LD_LIBRARY_PATH=" + (directory / ""),
+                                "TAPSTUDY_LSL_LOG=" + (directory / "received"),
+                                testing::tapstudy_program()};
+  std::ranges::copy(session_line(directory, fmt::format("{{lines: markers.tsv, lsl: {}}}", lsl)),
+                    std::back_inserter(line));
+  return testing::run_program(line, answers);
+}
+
 // Arguments: what was received, the lines of the same session, its database.
 constexpr const char* lsl_comparison = R"py(
 import sqlite3, sys
@@ -288,6 +299,30 @@ assert all(a[0] < b[0] for a, b in zip(forces, forces[1:]))
 assert max(y for _, _, y, _ in forces) > 0.5
 )py";
 }  // namespace
+
+TEST_CASE("the library of the Lab Streaming Layer is given every marker, and every force if asked",
+          "[end_to_end][markers][threads]") {
+  const TempDirectory directory;
+  const bool has_forces = GENERATE(true, false);
+  const auto run = session_with_lsl(directory, has_forces ? "{name: a_name, forces: true}" : "{}");
+  INFO(run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  const std::string received = testing::contents(directory / "received");
+  CHECK_THAT(received, Catch::Matchers::StartsWith(
+                           fmt::format("stream\t{0}\tMarkers\t1\t0\t3\ttapstudy {0}\n",
+                                       has_forces ? "a_name" : "tapstudy")));
+  if (!has_forces) {
+    CHECK_THAT(received, !Contains("\tForce\t") && !Contains("\nforce\t"));
+    return;
+  }
+  CHECK_THAT(received, Contains("\nstream\ta_name_force\tForce\t3\t0\t2\ttapstudy a_name_force\n"
+                                "label\tforce_x_n\nunit\tN\nlabel\tforce_y_n\nunit\tN\n"));
+  const auto compared =
+      testing::run_program({"/usr/bin/python3", "-c", lsl_comparison, directory / "received",
+                            directory / "markers.tsv", (directory / "the_study") + "/study.db"});
+  INFO(compared.standard_error);
+  CHECK(compared.exit_code == 0);
+}
 
 // Not tagged [threads]: the library's own are not instrumented.
 TEST_CASE("inlets of the Lab Streaming Layer get the markers and every tick's force",

@@ -27,4 +27,7 @@ std::string lab_program() {
 std::string stalling_player_program() {
   return TAPSTUDY_STALLING_PLAYER;
 }
+std::string lsl_stand_in() {
+  return TAPSTUDY_LSL;
+}
 }  // namespace tapstudy::testing

@@ -12,4 +12,5 @@ std::string openhaptics_program();
 std::string inverse3_program();
 std::string lab_program();
 std::string stalling_player_program();
+std::string lsl_stand_in();
 }  // namespace tapstudy::testing

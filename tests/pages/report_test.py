@@ -79,6 +79,15 @@ class Report(unittest.TestCase):
         self.run_program("report", "--counts", self.directory / "answers.csv", "--out", self.directory / "counts")
         self.check(self.directory / "counts")
 
+    def test_of_names_that_are_markup(self):
+        name = "<img src=x onerror=document.title='run'><script>document.title='run'</script>"
+        (self.directory / "answers.csv").write_text(ANSWERS.replace(",b", "," + name))
+        self.run_program("report", "--counts", self.directory / "answers.csv", "--out", self.directory / "markup")
+        self.driver.get((self.directory / "markup" / "report.html").as_uri())
+        self.assertEqual(self.driver.find_elements("css selector", "main script, main img[src=x]"), [])
+        self.assertEqual(self.driver.title, "answers")
+        self.assertIn(name, self.driver.execute_script("return document.querySelector('main').textContent"))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
 #include <string_view>
 #include <unordered_map>
@@ -93,13 +94,17 @@ std::optional<bool> right_or_wrong(const std::string& cell) {
 }
 
 bool says_practice(const std::string& column, const std::string& cell) {
-  constexpr std::array<std::string_view, 9> words{"practice",        "practise",        "training",
-                                                  "warmup",          "warm-up",         "warm up",
-                                                  "familiarisation", "familiarization", "tutorial"};
+  constexpr std::array<std::string_view, 11> words{
+      "practice",        "practise",        "training", "warmup",         "warm-up",    "warm up",
+      "familiarisation", "familiarization", "tutorial", "survey preview", "survey test"};
   const auto begins_with_one_of_them = [&](std::string_view text) {
-    return std::ranges::any_of(words, [&](std::string_view word) {
-      return is_same_word(text.substr(0, word.size()), word);
-    });
+    constexpr std::string_view shortened = "prac";  // E-Prime's PracProc
+    const bool is_shortened =
+        is_same_word(text.substr(0, shortened.size()), shortened) &&
+        (text.size() == shortened.size() || !std::islower(static_cast<unsigned char>(text[4])));
+    return is_shortened || std::ranges::any_of(words, [&](std::string_view word) {
+             return is_same_word(text.substr(0, word.size()), word);
+           });
   };
   const bool is_called_so =
       begins_with_one_of_them(column) ||

@@ -19,8 +19,8 @@ std::string to_text(const AnswerOrigin& origin);
 using AnswerOrigins = std::vector<AnswerOrigin>;
 
 // Whether a row is practice by what stands in one of its columns: the word itself ("practice",
-// "training", "warm-up", …), yes in a column that is called after it, or the count of PsychoPy's
-// loop of that name.
+// "training", "warm-up", E-Prime's "PracProc", Qualtrics' "Survey Preview" …), yes in a column that
+// is called after it, or the count of PsychoPy's loop of that name.
 bool says_practice(const std::string& column, const std::string& cell);
 
 // "1", "true", "correct" …, or the contrary; unset: says neither.

@@ -181,6 +181,36 @@ double unit_in(std::string_view name, double otherwise) {
 }
 }  // namespace
 
+bool is_missing(const std::string& cell) {
+  static constexpr std::array known{"",     "NA",   "<NA>", "N/A", "n/a",       "None",
+                                    "null", "NULL", "NaN",  "nan", "undefined", "timeout"};
+  return std::ranges::find(known, cell) != known.end();
+}
+
+bool is_score(const std::string& name) {
+  static constexpr std::array known{"accuracy", "acc",      "recall",      "precision",
+                                    "f1",       "f1-score", "sensitivity", "specificity"};
+  return is_share(name) || name.find('%') != std::string::npos ||
+         std::ranges::any_of(known, [&](const char* word) { return is_same_word(name, word); });
+}
+
+bool is_no_count(const std::string& name) {
+  static constexpr std::array parts{"trial", "index",    "order",    "time",
+                                    "block", "position", "duration", "session"};
+  static constexpr std::array words{"rt", "age", "id", "nr", "no", "run", "row", "date", "seed"};
+  const std::string small = in_small_letters(name);
+  const auto is_within = [&](const char* part) { return small.find(part) != std::string::npos; };
+  const auto is_a_word = [&](const std::string& word) {
+    const std::size_t at = small.find(word);
+    const auto is_letter = [&](std::size_t place) {
+      return place < small.size() && std::isalpha(static_cast<unsigned char>(small[place])) != 0;
+    };
+    return at != std::string::npos && !is_letter(at + word.size()) &&
+           (at == 0 || !is_letter(at - 1));
+  };
+  return std::ranges::any_of(parts, is_within) || std::ranges::any_of(words, is_a_word);
+}
+
 bool is_share(const std::string& name) {
   static constexpr std::array known{"percent",  "percentage", "pct",        "perc",
                                     "%",        "share",      "proportion", "proportions",

@@ -68,13 +68,6 @@ void check_names(const std::vector<results::AnswerRow>& answers, const std::stri
 }
 
 namespace {
-constexpr std::array missing_values{"",     "NA",  "N/A", "n/a",       "None",
-                                    "null", "NaN", "nan", "undefined", "timeout"};
-
-bool is_missing(const std::string& cell) {
-  return std::ranges::find(missing_values, cell) != missing_values.end();
-}
-
 using Origin = AnswerOrigin;
 
 // Reads one file.
@@ -124,8 +117,11 @@ class AnswerReader {
     table.has_times |= places_.time.has_value();
   }
   OtherColumns other_columns() const {
-    OtherColumns other{
-        header(), {}, places_.weight ? header()[*places_.weight] : "", header()[places_.response]};
+    OtherColumns other{&csv_,
+                       header(),
+                       {},
+                       places_.weight ? header()[*places_.weight] : "",
+                       header()[places_.response]};
     std::set<std::optional<std::size_t>> known{places_.stimulus,    places_.response,
                                                places_.participant, places_.time,
                                                places_.mode,        places_.block};
@@ -422,7 +418,7 @@ void check_order_names(const std::vector<std::string>& order,
 // Rows of all files, of one mode and one block.
 struct ReadRows {
   std::vector<Origin> origins;
-  OtherColumns columns;  // of the last file
+  std::vector<OtherColumns> columns;  // of each file
 };
 ReadRows read_rows(const std::vector<NamedCsv>& files, const AnswerReading& reading,
                    AnswerTable& table) {
@@ -441,7 +437,7 @@ ReadRows read_rows(const std::vector<NamedCsv>& files, const AnswerReading& read
     table.are_participants_known = reader.names_participants() ||
                                    (files.size() > 1 && reading.columns.participant != no_column);
     reader.add_to(table, read.origins);
-    read.columns = reader.other_columns();
+    read.columns.push_back(reader.other_columns());
   }
   if (table.answers.empty()) {
     throw core::InvalidInput{fmt::format("{}: holds no answers", files.front().file)};
@@ -464,7 +460,7 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   for (const auto& [given, meaning] : meanings) {
     responses.insert(meaning);
   }
-  check_responses(table.answers, read.origins, read.columns.response, responses);
+  check_responses(table.answers, read.origins, read.columns.back().response, responses);
   check_names(table.answers, files.front().file, stimuli, responses);
   check_right_answers(table.answers, read.origins);
   if (table.are_participants_known) {

@@ -79,6 +79,7 @@ bool is_json_list(std::string_view text);
 // ("response.Q0"). Several lists, one a line, are runs: the column `run_of_file` counts them.
 // Throws InvalidInput with the file for what is no such list and beyond 64 MB.
 CsvText read_json_rows(std::istream& text, const std::string& file);
-// The one answer in {"Q0": "oak"}, as surveys give it; any other cell as it is.
+// The one answer in {"Q0": "oak"}, as surveys give it, and in ['oak'], as PsychoPy lists keys and
+// what was clicked; any other cell as it is.
 std::string only_answer_in(const std::string& cell);
 }  // namespace tapstudy::analysis

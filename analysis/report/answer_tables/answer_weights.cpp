@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -69,8 +70,12 @@ bool number_trials(const Answers& answers, const Values& values) {
   });
 }
 
-// Whether for each stimulus of each participant values have the same sum, 1 or 100 but for
-// rounding: shares of its answers. Single values tell nothing.
+bool are_whole(const Values& values) {
+  return std::ranges::all_of(values, [](double value) { return value == std::floor(value); });
+}
+
+// Whether values have the same sum for each stimulus of each participant, 1 or 100 but for
+// rounding: shares of its answers; or in all, where they are not whole. Single values tell nothing.
 bool are_shares(const Answers& answers, const Values& values) {
   std::map<std::pair<std::string_view, std::string_view>, std::pair<double, int>> sums;
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -78,25 +83,37 @@ bool are_shares(const Answers& answers, const Values& values) {
     sum += values[i];
     ++number;
   }
-  const auto all_near = [&](double whole) {
-    return std::ranges::all_of(
-        sums, [&](const auto& one) { return std::abs(one.second.first - whole) <= 0.011 * whole; });
+  const auto is_near = [](double sum, double whole) {
+    return std::abs(sum - whole) <= 0.011 * whole;
   };
+  const auto all_near = [&](double whole) {
+    return std::ranges::all_of(sums,
+                               [&](const auto& one) { return is_near(one.second.first, whole); });
+  };
+  const double in_all = std::accumulate(values.begin(), values.end(), 0.0);
+  if (!are_whole(values) && (is_near(in_all, 1.0) || is_near(in_all, 100.0))) {
+    return true;
+  }
   const bool are_several =
       std::ranges::any_of(sums, [](const auto& one) { return one.second.second > 1; });
   return sums.size() > 1 && are_several && (all_near(1.0) || all_near(100.0));
 }
 
-bool are_whole(const Values& values) {
-  return std::ranges::all_of(values, [](double value) { return value == std::floor(value); });
+// Whether values of a column whose name does not say it may be counts: no flags, and nothing that a
+// participant has (an age).
+bool vary_as_counts(const Answers& answers, const Values& values) {
+  std::map<std::string_view, double> of_people;
+  bool varies = false;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    varies = varies ||
+             of_people.emplace(answers[i].participant_id, values[i]).first->second != values[i];
+  }
+  return varies && std::ranges::max(values) > 1.0;
 }
 
 // Of a table that was counted no column is known to say how often.
 void check_is_not_counted(const OtherColumns& columns, const Answers& answers,
                           const AnswerOrigins& origins) {
-  if (answers.size() < 2 || !is_counted_already(answers)) {
-    return;
-  }
   for (const std::size_t place : columns.places) {
     const std::string& name = columns.header[place];
     const auto values = numbers_in(origins, place);
@@ -108,7 +125,8 @@ void check_is_not_counted(const OtherColumns& columns, const Answers& answers,
                             "each row is one answer)",
                             column));
     }
-    if (may_be_counts(name) && values && are_whole(*values) && !number_trials(answers, *values)) {
+    if (values && are_whole(*values) && !number_trials(answers, *values) &&
+        (may_be_counts(name) || (!is_no_count(name) && vary_as_counts(answers, *values)))) {
       refuse_at(origins.front(),
                 fmt::format("{} may say how many answers a row stands for: {}, or --weights none "
                             "if each row is one answer",
@@ -117,6 +135,40 @@ void check_is_not_counted(const OtherColumns& columns, const Answers& answers,
                                          : fmt::format("--weights '{}'", name)));
     }
   }
+}
+
+void check_are_not_counted(const std::vector<OtherColumns>& files, const Answers& answers,
+                           const AnswerOrigins& origins) {
+  if (answers.size() < 2 || !is_counted_already(answers)) {
+    return;
+  }
+  for (const OtherColumns& file : files) {
+    Answers of_file;
+    AnswerOrigins their_origins;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      if (origins[i].csv == file.csv) {
+        of_file.push_back(answers[i]);
+        their_origins.push_back(origins[i]);
+      }
+    }
+    if (!of_file.empty()) {
+      check_is_not_counted(file, of_file, their_origins);
+    }
+  }
+}
+
+// That of the first file. Throws InvalidInput where only some have one.
+std::string weight_column_of(const std::vector<OtherColumns>& files) {
+  const auto is_weighted = [](const OtherColumns& file) { return !file.weight.empty(); };
+  const auto weighted = std::ranges::find_if(files, is_weighted);
+  const auto other = std::ranges::find_if_not(files, is_weighted);
+  if (weighted != files.end() && other != files.end()) {
+    throw core::InvalidInput{
+        fmt::format("{}: has no column that says how many answers a row stands for, as '{}' of {} "
+                    "does: --weights none if each row of all files is one answer",
+                    other->csv->file, weighted->weight, weighted->csv->file)};
+  }
+  return files.front().weight;
 }
 
 // The column that rows are weighted by; empty: each is one answer. A trial's own number may be
@@ -219,12 +271,13 @@ void repeat_by_weight(Answers& answers, AnswerOrigins& origins) {
 }
 }  // namespace
 
-void weigh_answers(const OtherColumns& columns, const AnswerReading& reading, AnswerTable& table,
-                   AnswerOrigins& origins) {
-  const std::string column = weight_column(columns.weight, table.answers, origins, reading);
+void weigh_answers(const std::vector<OtherColumns>& files, const AnswerReading& reading,
+                   AnswerTable& table, AnswerOrigins& origins) {
+  const std::string column =
+      weight_column(weight_column_of(files), table.answers, origins, reading);
   if (column.empty()) {
     if (reading.columns.weight.empty()) {
-      check_is_not_counted(columns, table.answers, origins);
+      check_are_not_counted(files, table.answers, origins);
     }
     return;
   }

@@ -4,11 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <span>
 #include <sstream>
 
+#include "analysis/report/answer_tables/answer_columns.hpp"
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
@@ -33,6 +36,29 @@ bool are_called_alike(const std::vector<CsvRow>& rows) {
          });
 }
 
+// A row for each participant and stimulus, and a column for each answer.
+void check_has_no_answers_in_columns(const std::vector<CsvRow>& rows, const std::string& file) {
+  const std::vector<std::string> header =
+      rows.empty() ? std::vector<std::string>{} : rows.front().cells;
+  const auto stimulus = std::ranges::find(header, "stimulus");
+  if (stimulus == header.end() || stimulus == header.begin()) {
+    return;
+  }
+  const auto place = stimulus - header.begin();
+  const auto is_presented = [&](const std::string& name) {
+    return std::ranges::any_of(std::span{rows}.subspan(1), [&](const CsvRow& row) {
+      return row.cells[static_cast<std::size_t>(place)] == name;
+    });
+  };
+  if (std::ranges::count_if(header, is_presented) > 1) {
+    refuse(file, rows.front().line,
+           fmt::format("has a row for each '{}' and stimulus, and answers as columns: put these "
+                       "into rows, with a column of their counts (pandas: stack(); R: "
+                       "as.data.frame(table())), or add the rows of each stimulus up",
+                       header.front()));
+  }
+}
+
 const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const std::string& file) {
   for (const CsvRow& row : rows) {
     if (row.cells.size() != rows.front().cells.size()) {
@@ -46,12 +72,14 @@ const std::vector<CsvRow>& checked_rows(const std::vector<CsvRow>& rows, const s
            "has rows and columns of the same names, and does not say which were presented: --rows "
            "stimuli or --rows responses (a header that starts with 'stimulus' says so itself)");
   }
+  check_has_no_answers_in_columns(rows, file);
   if (rows.size() < 2 || rows.front().cells.front() != "stimulus") {
     refuse(file, rows.empty() ? 1 : rows.front().line,
            fmt::format(
                "is neither a matrix (its header starts with 'stimulus', and there is a row "
                "for each) nor a table of answers (a row each; --stimulus-column and "
-               "--response-column name the columns, here: {})",
+               "--response-column name the columns, which commas, semicolons or tabs separate, "
+               "here: {})",
                fmt::join(rows.empty() ? std::vector<std::string>{} : rows.front().cells, ", ")));
   }
   return rows;
@@ -131,12 +159,18 @@ void check_is_named(const std::vector<Item>& stimuli, const std::vector<Item>& r
   }
 }
 
+using Lines = std::vector<std::vector<std::int64_t>>;
+
+std::int64_t sum_of(const std::vector<std::int64_t>& line) {
+  return std::accumulate(line.begin(), line.end(), std::int64_t{0});
+}
+
 // Whether in each line what stands at `place` is the sum of all else. Not of two alone, which may
 // be equal.
-bool is_margin(const std::vector<std::vector<std::int64_t>>& lines, std::size_t place) {
+bool is_margin(const Lines& lines, std::size_t place) {
   std::int64_t whole = 0;
   for (const auto& line : lines) {
-    const std::int64_t all = std::accumulate(line.begin(), line.end(), std::int64_t{0});
+    const std::int64_t all = sum_of(line);
     if (2 * line[place] != all) {
       return false;
     }
@@ -147,30 +181,60 @@ bool is_margin(const std::vector<std::vector<std::int64_t>>& lines, std::size_t 
 
 constexpr const char* otherwise = " (--are-counts: it is no sum)";
 
-// Of 100 answers to each stimulus only --are-counts can tell.
+Lines columns_of(const ConfusionMatrix& matrix) {
+  Lines columns(matrix.responses.size(), std::vector<std::int64_t>(matrix.stimuli.size()));
+  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
+    for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
+      columns[j][i] = matrix.counts[i][j];
+    }
+  }
+  return columns;
+}
+
+// But for two standard deviations of the sum of so many rounded numbers.
+bool is_about_100(std::int64_t sum, std::size_t numbers) {
+  const double rounding = std::max(1.0, std::sqrt(static_cast<double>(numbers) / 3.0));
+  return std::abs(static_cast<double>(sum) - 100.0) <= rounding;
+}
+
+// Of so many answers only --are-counts can tell.
 void check_are_no_percentages(const ConfusionMatrix& matrix, const std::vector<CsvRow>& lines,
                               const std::string& file) {
-  constexpr std::int64_t rounding = 1;
-  const auto adds_up = [](const std::vector<std::int64_t>& row) {
-    return std::abs(std::accumulate(row.begin(), row.end(), std::int64_t{0}) - 100) <= rounding;
+  const auto adds_up = [](const std::vector<std::int64_t>& line) {
+    return is_about_100(sum_of(line), line.size());
   };
-  if (std::ranges::all_of(matrix.counts, adds_up)) {
+  const std::size_t cells = matrix.stimuli.size() * matrix.responses.size();
+  const char* const what = std::ranges::all_of(matrix.counts, adds_up) ? "each row adds up"
+                           : std::ranges::all_of(columns_of(matrix), adds_up)
+                               ? "each column adds up"
+                           : is_about_100(matrix.total(), cells) ? "all numbers together add up"
+                                                                 : nullptr;
+  if (what != nullptr) {
     refuse(file, lines.front().line,
-           "each row adds up to 100, as percentages do, which are no counts (--are-counts: each "
-           "stimulus was presented so often)");
+           fmt::format("{} to 100, as percentages do, which are no counts (--are-counts: these are "
+                       "numbers of answers)",
+                       what));
+  }
+}
+
+// Columns that say something else than how often an answer was given.
+void check_are_answers(const ConfusionMatrix& matrix, const std::vector<CsvRow>& lines,
+                       const std::string& file) {
+  for (const Item& response : matrix.responses) {
+    const bool is_none = is_missing(response.name);
+    if (is_none || (!response.is_alternative && is_score(response.name))) {
+      refuse(file, lines.front().line,
+             fmt::format("column '{}' counts {}: leave it out (--are-counts: it is an answer like "
+                         "the others)",
+                         response.name, is_none ? "trials without an answer" : "no answers"));
+    }
   }
 }
 
 // They would count every answer twice.
 void check_has_no_margins(const ConfusionMatrix& matrix, const std::vector<CsvRow>& lines,
                           const std::string& file) {
-  std::vector<std::vector<std::int64_t>> columns(matrix.responses.size(),
-                                                 std::vector<std::int64_t>(matrix.stimuli.size()));
-  for (std::size_t i = 0; i < matrix.stimuli.size(); ++i) {
-    for (std::size_t j = 0; j < matrix.responses.size(); ++j) {
-      columns[j][i] = matrix.counts[i][j];
-    }
-  }
+  const Lines columns = columns_of(matrix);
   for (std::size_t j = 0; j < columns.size(); ++j) {
     if (is_margin(matrix.counts, j)) {
       refuse(file, lines.front().line,
@@ -216,6 +280,7 @@ ConfusionMatrix read_counts(const CsvText& csv, const std::string& file, bool ar
   const std::vector<CsvRow>& lines = checked_rows(csv.rows, file);
   ConfusionMatrix matrix = from_matrix(csv, lines, file);
   if (!are_counts) {
+    check_are_answers(matrix, lines, file);
     check_has_no_margins(matrix, lines, file);
     check_are_no_percentages(matrix, lines, file);
   }
@@ -226,12 +291,31 @@ ConfusionMatrix read_counts(const CsvText& csv, const std::string& file, bool ar
   return matrix;
 }
 
+namespace {
+void check_corner(const std::string& corner, MatrixRows rows) {
+  constexpr std::array of_stimuli{"stimulus", "stimuli", "presented", "true", "actual", "target"};
+  constexpr std::array of_responses{"response",  "responses",  "answer", "answered",
+                                    "predicted", "prediction", "pred"};
+  const auto is_one_of = [&](const auto& words) {
+    return std::ranges::any_of(words, [&](const char* word) { return is_same_word(corner, word); });
+  };
+  const bool are_stimuli = rows == MatrixRows::stimuli;
+  if (are_stimuli ? is_one_of(of_responses) : is_one_of(of_stimuli)) {
+    throw core::InvalidInput{fmt::format(
+        "--rows: the header begins with '{}', as if rows were {}: rename it if they "
+        "are {}",
+        corner, are_stimuli ? "responses" : "stimuli", are_stimuli ? "stimuli" : "responses")};
+  }
+}
+}  // namespace
+
 CsvText as_matrix(CsvText csv, MatrixRows rows) {
   std::vector<CsvRow>& lines = csv.rows;
   if (lines.empty()) {
     return csv;
   }
   std::vector<std::string>& header = lines.front().cells;
+  check_corner(header.front(), rows);
   const bool lacks_corner =
       lines.size() > 1 && std::ranges::all_of(std::span{lines}.subspan(1), [&](const CsvRow& row) {
         return row.cells.size() == header.size() + 1;

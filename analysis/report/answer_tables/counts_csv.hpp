@@ -9,11 +9,13 @@ namespace tapstudy::analysis {
 // A confusion matrix from a table of counts, one row per stimulus, counts below the responses:
 //   stimulus[,factor:NAME…],RESPONSE,RESPONSE,…
 // Factors are marked, with their levels below. Throws InvalidInput with file:line, unless they are
-// said to be counts also where rows add up to 100, as percentages do, or one is the sum of others.
+// said to be counts also where rows, columns or all numbers add up to 100, as percentages do, one
+// is the sum of others, or a column is called after missing answers or scores ("NA", "accuracy").
 ConfusionMatrix read_counts(const CsvText& csv, const std::string& file, bool are_counts = false);
 // Which of the two a table's rows stand for, where its corner does not say "stimulus".
 enum class MatrixRows { stimuli, responses };
 // The same table with that corner and stimuli as rows. R's write.table leaves the corner out.
+// Throws InvalidInput where the corner says the contrary.
 CsvText as_matrix(CsvText csv, MatrixRows rows);
 // Of the participants whose answers a table holds, where a comment says it: "# mode: pilot, real".
 std::set<std::string> modes_in(const CsvText& csv);

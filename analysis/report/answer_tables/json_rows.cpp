@@ -110,11 +110,15 @@ CsvText read_json_rows(std::istream& text, const std::string& file) {
 }
 
 std::string only_answer_in(const std::string& cell) {
-  if (!cell.starts_with('{')) {
+  if (!cell.starts_with('{') && !cell.starts_with('[')) {
     return cell;
   }
-  const auto answers = Json::parse(cell, nullptr, false);
-  if (!answers.is_object() || answers.size() != 1 || answers.front().is_structured()) {
+  std::string json = cell;
+  if (cell.starts_with("['")) {  // as Python writes it
+    std::ranges::replace(json, '\'', '"');
+  }
+  const auto answers = Json::parse(json, nullptr, false);
+  if (!answers.is_structured() || answers.size() != 1 || answers.front().is_structured()) {
     return cell;
   }
   return answers.front().is_string() ? answers.front().get<std::string>() : answers.front().dump();

@@ -41,6 +41,10 @@ void check_is_no_title(const CsvText& table, const std::string& file) {
     return;
   }
   const CsvRow& first = table.rows.front();
+  if (first.cells.front().find("*** Header Start ***") != std::string::npos) {
+    throw core::InvalidInput{fmt::format(
+        "{}: is E-Prime's own log: export it as a table by E-Merge or E-DataAid", file)};
+  }
   const std::vector<std::string>& next = table.rows[1].cells;
   const bool is_header_next = next.size() > 2 && have_cells(table, next.size());
   const bool is_undivided =

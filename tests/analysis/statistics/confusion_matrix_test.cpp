@@ -59,7 +59,7 @@ TEST_CASE("a matrix of R's and pandas' is read by rows or by columns, as is said
           "[analysis][confusion]") {
   const std::string with_corner =
       GENERATE("\"\",\"oak\",\"steel\"\n\"oak\",7,3\n\"steel\",1,9\n",  // R: write.csv(table(…))
-               "presented,oak,steel\noak,7,3\nsteel,1,9\n",             // pandas: crosstab
+               "plate,oak,steel\noak,7,3\nsteel,1,9\n",                 // pandas: crosstab
                "oak,steel\noak,7,3\nsteel,1,9\n");                      // R: write.table
   std::istringstream stream{with_corner};
   const CsvText csv = read_csv(stream, "counts.csv");
@@ -75,6 +75,18 @@ TEST_CASE("a matrix of R's and pandas' is read by rows or by columns, as is said
   if (!with_corner.starts_with("oak")) {
     CHECK_THAT(refusal(with_corner), Contains("--rows stimuli or --rows responses"));
   }
+}
+
+TEST_CASE("what rows stand for is not said against the corner", "[analysis][confusion]") {
+  const auto read = [](const std::string& corner, MatrixRows rows) {
+    std::istringstream stream{corner + ",oak,steel\noak,7,3\nsteel,1,9\n"};
+    return read_counts(as_matrix(read_csv(stream, "counts.csv"), rows), "counts.csv").counts[0][1];
+  };
+  CHECK(read("Predicted", MatrixRows::responses) == 1);
+  CHECK(read("true", MatrixRows::stimuli) == 3);
+  CHECK(read("Actual\\Predicted", MatrixRows::stimuli) == 3);
+  CHECK_THROWS_WITH(read("response", MatrixRows::stimuli), Contains("begins with 'response'"));
+  CHECK_THROWS_WITH(read("stimulus", MatrixRows::responses), Contains("as if rows were stimuli"));
 }
 
 TEST_CASE("a printed matrix has the exact interval and binomial test of R's binom.test",
@@ -256,10 +268,32 @@ TEST_CASE("a matrix of percentages is refused, unless they are said to be counts
                                 Contains("--are-counts"));
   std::istringstream stream{text};
   CHECK(read_counts(read_csv(stream, "counts.csv"), "counts.csv", true).total() == 299);
+  CHECK_THAT(refusal("stimulus,a,b,c\na,70,10,15\nb,20,60,5\nc,10,30,80\n"),
+             Contains("each column adds up"));
+  CHECK_THAT(refusal("stimulus,a,b,c\na,22,3,8\nb,0,28,6\nc,6,3,25\n"),
+             Contains("all numbers together add up to 100") && Contains("--are-counts"));
+  CHECK(refusal("stimulus,a,b,c\na,22,3,8\nb,0,28,6\nc,6,3,29\n") == "accepted");
   CHECK_THAT(refusal("stimulus,a,b\na,0.85,0.15\nb,0.5,0.5\n"), Contains("shares are no counts"));
   CHECK_THAT(refusal("stimulus,a,b\na,8,\nb,4,5\n"), Contains("counts.csv:2: has an empty cell"));
   CHECK(refusal("stimulus,a,b\na,85,15\nb,40,50\n") == "accepted");
   CHECK(refusal("stimulus,a,b\na,8.0,1.0\nb,4.0,5.0\n") == "accepted");
+}
+
+TEST_CASE("columns of missing answers and of scores are no answers, unless that is said",
+          "[analysis][confusion]") {
+  const std::string name = GENERATE("NA", "<NA>", "accuracy", "Recall", "% correct");
+  const std::string text = "stimulus,a,b," + name + "\na,8,2,5\nb,3,7,2\n";
+  CHECK_THAT(refusal(text),
+             Contains("counts.csv:1: column '" + name + "' counts ") && Contains("--are-counts"));
+  std::istringstream stream{text};
+  CHECK(read_counts(read_csv(stream, "counts.csv"), "counts.csv", true).total() == 27);
+  CHECK(refusal("stimulus,a,b,unsure\na,8,2,5\nb,3,7,2\n") == "accepted");
+}
+
+TEST_CASE("a row for each participant and stimulus is no matrix, and the refusal says what to do",
+          "[analysis][confusion]") {
+  CHECK_THAT(refusal("participant,stimulus,a,b\n1,a,3,1\n1,b,0,4\n2,a,4,0\n2,b,2,2\n"),
+             Contains("has a row for each 'participant' and stimulus") && Contains("stack()"));
 }
 
 TEST_CASE("reports of an empty row or an unanswered block say so", "[analysis][report]") {

@@ -242,6 +242,27 @@ TEST_CASE("a row of a table that was counted stands for as many answers as it sa
   CHECK(answers_in(counted, reading).answers.size() == 4);
 }
 
+TEST_CASE("rows of all files say how often they count, or those of none, in whatever order",
+          "[analysis][answer_tables]") {
+  const NamedCsv counted = csv_of("participant,stimulus,response,n\nA,a,a,3\nA,b,b,2\n", "one.csv");
+  const NamedCsv also = csv_of("participant,stimulus,response,n\nB,a,a,3\nB,b,a,2\n", "also.csv");
+  const NamedCsv trials = csv_of("participant,stimulus,response\nB,a,a\nB,b,b\n", "other.csv");
+  const NamedCsv asked =
+      csv_of("participant,response,many,stimulus\nC,a,4,a\nC,b,2,b\n", "asked.csv");
+  CHECK(read_answers({counted, also}, {}).answers.size() == 10);
+  for (const auto& files : {std::vector{counted, trials}, std::vector{trials, counted}}) {
+    CHECK_THROWS_WITH(read_answers(files, {}),
+                      Contains("other.csv: has no column that says how many") &&
+                          Contains("'n' of one.csv") && Contains("--weights none"));
+  }
+  for (const auto& files : {std::vector{asked, trials}, std::vector{trials, asked}}) {
+    CHECK_THROWS_WITH(read_answers(files, {}), Contains("asked.csv:2: column 'many' may say"));
+  }
+  AnswerReading one_each;
+  one_each.columns.weight = no_column;
+  CHECK(read_answers({counted, trials}, one_each).answers.size() == 4);
+}
+
 TEST_CASE("where it is not clear whether rows are counts, it is asked, and shares are none",
           "[analysis][answer_tables]") {
   // the trials' own numbers; the same answer in two rows
@@ -352,6 +373,8 @@ TEST_CASE("the one answer of a survey is the answer, and each of several has a c
                                    {"stimulus": "b", "response": {"Q0": "a"}}])",
                                {});
   CHECK(one.answers[1].response == "a");
+  CHECK(only_answer_in("['num_1']") == "num_1");  // as PsychoPy lists keys and what was clicked
+  CHECK(only_answer_in("['a', 'b']") == "['a', 'b']");
   AnswerReading second;
   second.columns.response = "response.Q1";
   const AnswerTable several = read(
@@ -412,13 +435,15 @@ TEST_CASE("text in another encoding is read where it is said, and the error says
 
 TEST_CASE("practice among the answers is asked about, in whatever column other programs note it",
           "[analysis][answer_tables]") {
-  const auto [column, practice, test] =
-      GENERATE(table<std::string, std::string, std::string>({{"phase", "practice", "test"},
-                                                             {"block", "Training", "main"},
-                                                             {"trial_part", "warm-up 1", ""},
-                                                             {"is_practice", "true", "false"},
-                                                             {"practice", "1", "0"},
-                                                             {"practice_loop.thisN", "0", ""}}));
+  const auto [column, practice, test] = GENERATE(
+      table<std::string, std::string, std::string>({{"phase", "practice", "test"},
+                                                    {"block", "Training", "main"},
+                                                    {"trial_part", "warm-up 1", ""},
+                                                    {"is_practice", "true", "false"},
+                                                    {"practice", "1", "0"},
+                                                    {"Procedure[Trial]", "PracProc", "TrialProc"},
+                                                    {"Status", "Survey Preview", "IP Address"},
+                                                    {"practice_loop.thisN", "0", ""}}));
   CAPTURE(column);
   const auto row = [](const std::string& answer, const std::string& part) {
     return "P1,a," + answer + "," + part + "\nP1,b,b," + part + "\n";
@@ -444,7 +469,8 @@ TEST_CASE("a stimulus or a person may be called after practice", "[analysis][ans
 
 TEST_CASE("a counted table whose counts have an unusual name is asked about, none is passed over",
           "[analysis][answer_tables]") {
-  const std::string name = GENERATE("0", "size", "n_trials", "Anzahl", "count_nonzero", "Freq.x");
+  const std::string name = GENERATE("0", "size", "n_trials", "Anzahl", "count_nonzero", "Freq.x",
+                                    "H\u00e4ufigkeit", "Var1");
   const std::string text = "stimulus,response," + name + "\na,a,15\na,b,3\nb,a,1\nb,b,17\n";
   CHECK_THAT(refusal(text), Contains("answers.csv:2: column '" + name + "' may say how many") &&
                                 Contains("--weights '" + name + "', or --weights none"));
@@ -458,6 +484,9 @@ TEST_CASE("a counted table whose counts have an unusual name is asked about, non
   // rows of a table that pandas numbered, trials, and ages of people are no counts
   CHECK(refusal(",stimulus,response,number\n0,a,a,3\n1,a,b,1\n2,b,b,2\n") == "accepted");
   CHECK(refusal("participant,age,stimulus,response\nA,31,a,a\nA,31,b,b\nB,25,a,a\n") == "accepted");
+  CHECK(refusal("participant,shoes,stimulus,response\nA,41,a,a\nA,41,b,b\nB,39,a,a\n") ==
+        "accepted");
+  CHECK(refusal("stimulus,response,is_first,rt\na,a,1,700\na,b,1,650\nb,b,0,810\n") == "accepted");
 }
 
 TEST_CASE(
@@ -474,6 +503,7 @@ TEST_CASE(
   CHECK_THAT(refusal(table_of("said", {"0.85", "0.15", "0.1", "0.9"})),
              Contains("'said' holds shares") && Contains("--weights"));
   CHECK_THAT(refusal(table_of("said", {"85", "15", "10", "91"})), Contains("'said' holds shares"));
+  CHECK_THAT(refusal(table_of("0", {"0.4", "0.1", "0.15", "0.35"})), Contains("'0' holds shares"));
   const std::string hundreds = table_of("n", {"85", "15", "10", "90"});
   CHECK_THAT(refusal(hundreds),
              Contains("column 'n' looks like shares") && Contains("--are-counts"));
@@ -599,4 +629,6 @@ TEST_CASE("R's names of rows have no header, and a title is none", "[analysis][a
                     Contains("answers.csv:1: 'Experiment of today' is no header"));
   CHECK_THROWS_WITH(settled("C:\\Taps.edat3\nSubject\tstimulus\tresponse\nP1\ta\ta\n"),
                     Contains("answers.csv:1: 'C:\\Taps.edat3' is no header"));
+  CHECK_THROWS_WITH(settled("*** Header Start ***\nSubject: 1\n*** Header End ***\n"),
+                    Contains("is E-Prime's own log") && Contains("E-DataAid"));
 }

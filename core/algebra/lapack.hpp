@@ -15,6 +15,10 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A);
 // Throws ModelError also if B is not positive definite.
 EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A, Eigen::MatrixXd B);
 
+// All eigenvalues of a symmetric A, only whose lower triangle is read, and the orthonormal vectors
+// of the `count` largest alone, ascending likewise. Throws ModelError likewise.
+EigenPairs largest_eigenpairs(Eigen::MatrixXd A, Eigen::Index count);
+
 // The eigenvalues of any real square matrix, in no order; complex ones in conjugate pairs.
 // Throws ModelError if the iteration does not converge or an entry is not a number.
 Eigen::VectorXcd eigenvalues(Eigen::MatrixXd A);

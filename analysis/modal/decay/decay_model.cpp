@@ -132,8 +132,10 @@ DecayModel::DecayModel(const BandSpectrum& spectrum, Eigen::Index poles,
   const auto lines = static_cast<Eigen::Index>(lines_hz.size());
   nuisance_ = Eigen::MatrixXd{data_.size(), smooth_terms + 2 * lines};
   nuisance_.col(0) = stacked((1.0 / (1.0 - q)).matrix());
+  Eigen::ArrayXcd of_power = Eigen::ArrayXcd::Ones(q.size());
   for (int power = 0; power < smooth_terms - 1; ++power) {
-    nuisance_.col(power + 1) = stacked(q.pow(power).matrix());
+    nuisance_.col(power + 1) = stacked(of_power.matrix());
+    of_power *= q;
   }
   for (Eigen::Index k = 0; k < lines; ++k) {
     const Complex log_z = log_of({lines_hz[static_cast<std::size_t>(k)], 0.0}, spectrum.rate_hz);

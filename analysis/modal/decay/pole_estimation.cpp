@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/statistics/quantiles.hpp"
+#include "core/algebra/blas.hpp"
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -32,14 +33,26 @@ Eigen::MatrixXd hankel_gram(const Eigen::VectorXd& y, Eigen::Index columns) {
   return gram;
 }
 
-// Phi = V1^+ V2, where V1' V1 = I - v v' with v the last row of V (Sherman-Morrison).
-Eigen::MatrixXd shift_matrix(const Eigen::MatrixXd& singular_vectors) {
-  const Eigen::Index rows = singular_vectors.rows() - 1;
-  const Eigen::MatrixXd product =
-      singular_vectors.topRows(rows).transpose() * singular_vectors.bottomRows(rows);
-  const Eigen::VectorXd last = singular_vectors.row(rows).transpose();
-  return product + last * (last.transpose() * product) / std::max(1.0 - last.squaredNorm(), 1e-12);
-}
+// Phi = V1^+ V2 of the last columns of V, where V1' V1 = I - v v' with v the last row of V
+// (Sherman-Morrison).
+class ShiftMatrices {
+ public:
+  explicit ShiftMatrices(const Eigen::MatrixXd& singular_vectors)
+      : products_{core::inner_products(singular_vectors.topRows(singular_vectors.rows() - 1),
+                                       singular_vectors.bottomRows(singular_vectors.rows() - 1))},
+        last_row_{singular_vectors.bottomRows(1).transpose()} {}
+
+  Eigen::MatrixXd of_order(Eigen::Index order) const {
+    const Eigen::MatrixXd product = products_.bottomRightCorner(order, order);
+    const Eigen::VectorXd last = last_row_.tail(order);
+    return product +
+           last * (last.transpose() * product) / std::max(1.0 - last.squaredNorm(), 1e-12);
+  }
+
+ private:
+  Eigen::MatrixXd products_;
+  Eigen::VectorXd last_row_;
+};
 
 std::vector<Pole> poles_in(const Eigen::VectorXcd& eigenvalues, double rate_hz, const Band& band) {
   std::vector<Pole> poles;
@@ -65,14 +78,15 @@ int count_above_noise(const Eigen::VectorXd& singular_values) {
 
 MatrixPencil read_gram(Eigen::MatrixXd gram, double rate_hz, const Band& band, int max_order) {
   const Eigen::Index pencil = gram.cols() - 1;
-  const core::EigenPairs pairs = core::symmetric_eigenpairs(std::move(gram));
+  const Eigen::Index most = std::clamp<Eigen::Index>(max_order, 0, pencil - 2);
+  const core::EigenPairs pairs = core::largest_eigenpairs(std::move(gram), most);
   MatrixPencil result;
   result.singular_values = pairs.values.reverse().cwiseMax(0.0).cwiseSqrt();
   result.significant_order = count_above_noise(result.singular_values);
-  const int last = std::min(
-      {max_order, result.significant_order + further_orders, static_cast<int>(pencil) - 2});
+  const int last = std::min(result.significant_order + further_orders, static_cast<int>(most));
+  const ShiftMatrices shifts{pairs.vectors};
   for (int order = 2; order <= last; order += 2) {
-    const Eigen::VectorXcd z = core::eigenvalues(shift_matrix(pairs.vectors.rightCols(order)));
+    const Eigen::VectorXcd z = core::eigenvalues(shifts.of_order(order));
     result.orders.push_back({order, poles_in(z, rate_hz, band)});
   }
   return result;

@@ -16,7 +16,8 @@
 namespace tapstudy::analysis {
 namespace {
 void run_gnuplot(const std::string& script, const std::string& file) {
-  FILE* const gnuplot = popen("gnuplot >/dev/null 2>&1", "w");
+  // of its standard input gnuplot reads one byte at a time, of a named file blocks
+  FILE* const gnuplot = popen("gnuplot /dev/stdin >/dev/null 2>&1", "w");
   const bool is_written =
       gnuplot != nullptr && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
   const int status = gnuplot == nullptr ? -1 : pclose(gnuplot);

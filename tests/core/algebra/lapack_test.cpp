@@ -28,6 +28,21 @@ TEST_CASE("the eigenvalues of a companion matrix are the roots of its polynomial
   CHECK(core::eigenvalues(Eigen::MatrixXd{0, 0}).size() == 0);
 }
 
+TEST_CASE("the largest eigenpairs are those of all", "[core][algebra]") {
+  const Eigen::MatrixXd factor = random_matrix(40, 25, 3);  // 15 eigenvalues are 0
+  const Eigen::MatrixXd A = factor * factor.transpose();
+  const core::EigenPairs all = core::symmetric_eigenpairs(A);
+  for (const Eigen::Index count : {0, 1, 7, 40}) {
+    const core::EigenPairs some = core::largest_eigenpairs(A, count);
+    CHECK((some.values - all.values).norm() < 1e-12 * all.values.norm());
+    CHECK((A * some.vectors - some.vectors * some.values.tail(count).asDiagonal()).norm() <
+          1e-12 * A.norm());
+    CHECK(
+        (some.vectors.transpose() * some.vectors - Eigen::MatrixXd::Identity(count, count)).norm() <
+        1e-12);
+  }
+}
+
 TEST_CASE("the pseudo-inverse meets Penrose's four conditions, of a singular matrix too",
           "[core][algebra]") {
   const Eigen::MatrixXd factor = random_matrix(6, 4, 1);

@@ -13,6 +13,9 @@ struct Meshing {
   int order{1};  // of the elements: 1 (T4), 2 (T10), or chosen_order (element_order.hpp)
   // Refine until no frequency in the band changes by more than this fraction; unset: no refinement.
   std::optional<double> accuracy{};
+  // Order, size and flattening are chosen for the accuracy (refinement/refinement.hpp); what is
+  // stated here of them is not used.
+  bool is_automatic{false};
 };
 
 // The theory by which a body's modes are found: elasticity, by finite elements; or that of

@@ -140,6 +140,7 @@ Stage stage_of(const protocols::Protocol& protocol, const protocols::Stimulus& s
               {},
               true};
   stage.plate.mesh.accuracy.reset();
+  stage.plate.mesh.is_automatic = false;
   stage.plate.mesh.size.max_tet_volume_m3 =
       std::abs(core::volume_m3(stage.plate.shape)) / tets_at_most;
   stage.tap.speed_m_s = protocol.simulation.taps.speed_m_s;

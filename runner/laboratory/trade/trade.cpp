@@ -193,6 +193,7 @@ core::Meshing mesh_of(const core::PlateSpec& plate, int order, double tets) {
   core::Meshing mesh = plate.mesh;
   mesh.order = order;
   mesh.accuracy.reset();
+  mesh.is_automatic = false;
   mesh.size.max_tet_volume_m3 = std::abs(core::volume_m3(plate.shape)) / tets;
   return mesh;
 }

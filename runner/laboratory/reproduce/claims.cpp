@@ -79,8 +79,12 @@ std::string describe_limits(const Measure& measure) {
   return high ? "at most " + with_unit(*high, measure.unit) : "";
 }
 
+bool Method::judges() const {
+  return std::ranges::any_of(measures, &Measure::is_judged);
+}
+
 bool Method::confirms() const {
-  return std::ranges::all_of(measures, &Measure::holds);
+  return judges() && std::ranges::all_of(measures, &Measure::holds);
 }
 
 std::string_view name(ClaimVerdict verdict) {
@@ -89,6 +93,8 @@ std::string_view name(ClaimVerdict verdict) {
       return "true";
     case ClaimVerdict::refuted:
       return "false";
+    case ClaimVerdict::shown:
+      return "shown";
     case ClaimVerdict::depends:
       break;
   }
@@ -96,11 +102,15 @@ std::string_view name(ClaimVerdict verdict) {
 }
 
 ClaimVerdict Claim::verdict() const {
+  const auto judging = std::ranges::count_if(methods, &Method::judges);
   const auto confirming = std::ranges::count_if(methods, &Method::confirms);
-  if (confirming == 0) {
-    return ClaimVerdict::refuted;
+  if (judging == 0) {
+    return ClaimVerdict::shown;
   }
-  return confirming == std::ssize(methods) ? ClaimVerdict::confirmed : ClaimVerdict::depends;
+  if (!unknown_input.empty() || (confirming > 0 && confirming < judging)) {
+    return ClaimVerdict::depends;
+  }
+  return confirming == 0 ? ClaimVerdict::refuted : ClaimVerdict::confirmed;
 }
 
 std::vector<std::string> Claim::reasons() const {
@@ -110,11 +120,17 @@ std::vector<std::string> Claim::reasons() const {
     if (method.confirms()) {
       confirming.push_back(method.name);
     } else {
-      others.push_back(fmt::format("Does not hold {}.", missed(method)));
+      others.push_back(method.judges()
+                           ? fmt::format("Does not hold {}.", missed(method))
+                           : fmt::format("Shown {}: no judgement of the paper.", method.name));
     }
   }
   if (!confirming.empty()) {
     others.insert(others.begin(), fmt::format("Holds {}.", fmt::join(confirming, "; ")));
+  }
+  if (!unknown_input.empty()) {
+    others.insert(others.begin(),
+                  fmt::format("Depends on what the paper does not give: {}.", unknown_input));
   }
   return others;
 }

@@ -13,8 +13,11 @@
 namespace tapstudy::runner {
 // A claim of the paper beside what tapstudy gets. The judgement is computed from the numbers:
 //   a measure holds if its value lies within its limits; one without is only shown, and holds
-//   a method confirms the claim if all its measures hold
-//   a claim is true if every method confirms it, false if none does; else it depends on the method
+//   a method judges the claim if one of its measures has a limit, and confirms it if all hold: what
+//   repeats the paper's own numbers, or tells of this machine, has none
+//   a claim is true if every method that judges confirms it, false if none does; else it depends on
+//   the method; where the paper leaves out an input of it, it depends on that; where no method
+//   judges, it is shown
 
 struct Measure {
   std::string name;
@@ -40,11 +43,12 @@ struct Method {
   std::string name;
   std::string command;  // of tapstudy, that shows the numbers
   std::vector<Measure> measures;
-  bool confirms() const;
+  bool judges() const;
+  bool confirms() const;  // false if it does not judge
 };
 
-enum class ClaimVerdict { confirmed, refuted, depends };
-// "true", "false", "depends"
+enum class ClaimVerdict { confirmed, refuted, depends, shown };
+// "true", "false", "depends", "shown"
 std::string_view name(ClaimVerdict verdict);
 
 // Drawn on the page below a heading of its own; `svg` is complete, with its caption.
@@ -66,13 +70,16 @@ struct Claim {
   std::string section;    // of the paper
   std::string statement;  // in our words
   std::string rule;       // when a measure holds, and why that limit
+  // What the result rests on, was chosen here and is not in the paper; empty: nothing.
+  std::string unknown_input{};
   std::vector<Method> methods{};
   std::vector<Measure> findings{};  // beside the judgement: what would give it, and the like
   std::vector<std::string> remarks{};
   std::vector<Drawing> drawings{};
   std::vector<Animation> animations{};
   ClaimVerdict verdict() const;
-  // The methods that confirm the claim, and the failing measures of each of the others.
+  // The unknown input; the methods that confirm the claim, and the failing measures of each of the
+  // others; those that judge nothing.
   std::vector<std::string> reasons() const;
 };
 

@@ -261,7 +261,6 @@ double share(const ConfusionMatrix& table, const char* factor) {
 // The printed shares with the interval in which the material's must lie.
 Claim structure_well_material_less(const Bench& bench, const ConfusionMatrix& table,
                                    const std::vector<Simulated>& studies) {
-  constexpr double printed_material = 2.0 / 3.0;
   const analysis::Interval interval =
       analysis::wilson_interval(analysis::factor_accuracy(table, "material"));
   Claim claim{.name = "structure_well_material_two_thirds",
@@ -270,18 +269,16 @@ Claim structure_well_material_less(const Bench& bench, const ConfusionMatrix& ta
                   "Structure is told apart well, of material only two thirds of the answers "
                   "are right.",
               .rule =
-                  "Well is 75 %, halfway between guessing and always right. Of Table 2, two thirds "
-                  "lie in the 95 % interval of the share of material; the simulated observer's "
-                  "share, with the noise fitted on all of Table 2, lies in that interval."};
+                  "Well is 75 %, halfway between guessing and always right. Table 2 itself is only "
+                  "shown. The simulated observer's share of material, with the noise fitted on all "
+                  "of Table 2, lies in the 95 % interval of that table's."};
   claim.methods.push_back(
       {"Table 2 itself",
        fmt::format("tapstudy report --counts {}", table_file),
-       {at_least(100.0 * well, "structure right", 100.0 * share(table, "structure"), "%"),
+       {shown("structure right", 100.0 * share(table, "structure"), "%"),
         shown("material right", 100.0 * share(table, "material"), "%"),
-        at_most(100.0 * printed_material, "lower end of material's interval", 100.0 * interval.low,
-                "%"),
-        at_least(100.0 * printed_material, "upper end of material's interval",
-                 100.0 * interval.high, "%")}});
+        shown("lower end of material's interval", 100.0 * interval.low, "%"),
+        shown("upper end of material's interval", 100.0 * interval.high, "%")}});
   for (const Simulated& study : studies) {
     const Predicted& fitted = best(table, all_rows, study);
     const double material = 100.0 * share(fitted.answers, "material");

@@ -228,6 +228,9 @@ std::vector<Claim> feedback_forces(Bench& bench) {
   std::vector<Claim> claims{
       none_at_p1(all),  low_absent_at_p2(all),     high_seen_at_p2(all), most_in_aluminium(all),
       large_at_p3(all), smaller_in_aluminium(all), low_absent_at_p3(all)};
+  for (Claim& claim : claims) {
+    claim.unknown_input = "where P1, P2 and P3 are, and which corners two fixations hold";
+  }
   for (const Taps& taps : all) {
     claims.front().drawings.push_back(waveforms(taps, "two"));
     claims.front().drawings.push_back(waveforms(taps, "four"));

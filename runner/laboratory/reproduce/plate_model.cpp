@@ -25,6 +25,7 @@ constexpr double same_count = 0.01;
 constexpr double corner_constraints = 12;  // four nodes, three axes
 const char* const model_file = "protocols/paper/plate_model.yaml";
 const char* const model_plate = "mdf";
+constexpr const char* unknown_mesher = "the settings with which TetGen made the mesh";
 
 core::ModelReport report_of(Bench& bench, const protocols::Protocol& protocol) {
   return bench.models.body_of(protocol, stimulus_with(protocol, protocol.stimulus(model_plate)))
@@ -33,11 +34,11 @@ core::ModelReport report_of(Bench& bench, const protocols::Protocol& protocol) {
 
 Claim tetrahedra(Bench& bench) {
   const core::ModelReport report = report_of(bench, shipped_protocol(model_file));
-  Claim claim{
-      .name = "tetrahedra",
-      .section = "Table 1",
-      .statement = "The plate is meshed with 443 linear tetrahedra.",
-      .rule = "The count differs by no more than 1 %: a mesh of another version of TetGen."};
+  Claim claim{.name = "tetrahedra",
+              .section = "Table 1",
+              .statement = "The plate is meshed with 443 linear tetrahedra.",
+              .rule = "The count differs by no more than 1 %: a mesh of another version of TetGen.",
+              .unknown_input = unknown_mesher};
   claim.methods.push_back({std::string{method::printed},
                            modes_command(model_file, model_plate),
                            {shown("tetrahedra", report.tets),
@@ -67,11 +68,11 @@ std::vector<Measure> meshes_of(const protocols::Plate& body) {
 Claim all_modes(Bench& bench) {
   const protocols::Protocol protocol = shipped_protocol(model_file);
   const core::ModelReport report = report_of(bench, protocol);
-  Claim claim{
-      .name = "all_modes",
-      .section = "section 5.1",
-      .statement = "Fixed at its four bottom corners the model has 267 modes.",
-      .rule = "As many modes as free degrees of freedom, with no more than 1 % difference."};
+  Claim claim{.name = "all_modes",
+              .section = "section 5.1",
+              .statement = "Fixed at its four bottom corners the model has 267 modes.",
+              .rule = "As many modes as free degrees of freedom, with no more than 1 % difference.",
+              .unknown_input = unknown_mesher};
   claim.methods.push_back({std::string{method::printed},
                            modes_command(model_file, model_plate),
                            {shown("free degrees of freedom", report.dofs),
@@ -361,14 +362,13 @@ Method timed(Bench& bench, const std::string& name, const std::string& file,
   const core::Shape& shape = stimulus.plate->shape;
   const double typical_ms =
       1e-6 * tick_ns(plate, shape, stimulus.rendering, {core::Vec3::Zero(), 0.3});
-  return {
-      name,
-      fmt::format("tapstudy trade {} --stimulus {} --quick", file, stimulus_name),
-      {shown("modes", static_cast<double>(plate.model.frequency_hz.size())),
-       at_most(printed_mean_ms, "typical time of a tick", typical_ms, "ms"),
-       at_most(printed_longest_ms, fmt::format("longest processor time of {} ticks", timed_ticks),
-               longest_tick_ms(plate, shape, stimulus.rendering), "ms"),
-       shown("times faster than printed", printed_mean_ms / typical_ms)}};
+  return {name,
+          fmt::format("tapstudy trade {} --stimulus {} --quick", file, stimulus_name),
+          {shown("modes", static_cast<double>(plate.model.frequency_hz.size())),
+           shown("typical time of a tick", typical_ms, "ms"),
+           shown(fmt::format("longest processor time of {} ticks", timed_ticks),
+                 longest_tick_ms(plate, shape, stimulus.rendering), "ms"),
+           shown("times faster than printed", printed_mean_ms / typical_ms)}};
 }
 }  // namespace
 
@@ -380,9 +380,8 @@ std::vector<Claim> step_time(Bench& bench) {
                   "than {} ms, so that the loop keeps 1 ms.",
                   printed_modes_in_band, printed_mean_ms, printed_longest_ms),
               .rule =
-                  "On this machine, which is another than the paper's, the median over batches of "
-                  "1000 ticks is at most the printed mean, and no tick takes more of the "
-                  "processor's time than the printed maximum."};
+                  "Not at all: this machine is another than the paper's. Shown are the median over "
+                  "batches of 1000 ticks, and the longest processor time of one."};
   claim.methods.push_back(timed(bench, std::string{method::printed},
                                 "protocols/paper/plate_model.yaml", "aluminium", 4500.0));
   claim.methods.push_back(timed(bench, std::string{method::recommended},

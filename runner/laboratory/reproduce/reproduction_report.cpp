@@ -20,7 +20,7 @@ namespace tapstudy::runner {
 // After that of reports.
 inline constexpr const char* reproduction_style = R"css(
 .verdict{display:inline-block;min-width:4.5rem;text-align:center;border-radius:.3rem;padding:0 .5rem;color:#fff;font-weight:600}
-.true{background:#1b6e3c}.false{background:#a32a2a}.depends{background:#7a5600}
+.true{background:#1b6e3c}.false{background:#a32a2a}.depends{background:#7a5600}.shown{background:#4a5763}
 .claim{border-top:1px solid #cdd6df;margin-top:1.5rem;padding-top:.5rem}.claim h3{margin:.3rem 0;border:0}
 .claim h4{font-size:1rem;margin:1rem 0 .3rem}code{font:.85rem ui-monospace,monospace;overflow-wrap:anywhere}
 .scroll{margin:.3rem 0 1rem}.data th,.data td,.data thead th{white-space:normal;text-align:left;vertical-align:top}
@@ -72,7 +72,10 @@ ReportTable table_of(const std::string& title, const std::vector<Measure>& measu
 void write_numbers(std::ostream& out, const Claim& claim) {
   for (const Method& method : claim.methods) {
     core::print(out, "<h4>{}: {}</h4>\n<p><code>{}</code></p>\n", escaped(method.name),
-                method.confirms() ? "holds" : "does not hold", escaped(method.command));
+                !method.judges()    ? "shown"
+                : method.confirms() ? "holds"
+                                    : "does not hold",
+                escaped(method.command));
     write_framed_html(out, table_of(method.name, method.measures));
   }
   if (!claim.findings.empty()) {
@@ -186,10 +189,12 @@ Json as_json(const Claim& claim, const std::string& group) {
   json["verdict"] = name(claim.verdict());
   json["reasons"] = claim.reasons();
   json["rule"] = claim.rule;
+  json["unknown_input"] = claim.unknown_input;
   json["methods"] = Json::array();
   for (const Method& method : claim.methods) {
     json["methods"].push_back({{"name", method.name},
                                {"command", method.command},
+                               {"judges", method.judges()},
                                {"confirms", method.confirms()},
                                {"measures", table_json(table_of("", method.measures))}});
   }
@@ -200,7 +205,7 @@ Json as_json(const Claim& claim, const std::string& group) {
 }  // namespace
 
 void write_json(std::ostream& out, const Reproduction& reproduction) {
-  Json json{{"schema_version", 1},
+  Json json{{"schema_version", 2},
             {"paper", paper_title},
             {"program", reproduction.program},
             {"command", command_of(reproduction)},

@@ -27,8 +27,10 @@ inline constexpr const char* introduction =
     "computed by the printed method and by the one that tapstudy recommends, where they differ. "
     "Below each claim are its numbers, and the command that shows them.";
 inline constexpr const char* judging_rule =
-    "A claim is true if it holds by every method, false if by none; else it depends on the method. "
-    "It holds by a method if every measure keeps its limit.";
+    "A claim is true if it holds by every method, false if by none; else it depends on the method, "
+    "or on an input that the paper does not give. It holds by a method if every measure keeps its "
+    "limit. What repeats the paper's own numbers, or tells of this machine, has no limit and is "
+    "only shown.";
 inline constexpr const char* simulated_note =
     "What is said of people here is said of simulated observers, never of people.";
 // The command line that makes the same again.

@@ -58,15 +58,36 @@ bool says(const std::string& page, const std::string& words) {
 }
 }  // namespace
 
-TEST_CASE("a claim is true if every method confirms it, false if none does, else it depends",
-          "[runner][reproduction]") {
+TEST_CASE(
+    "a claim is true if every method that judges confirms it, false if none does, else it "
+    "depends",
+    "[runner][reproduction]") {
   for (unsigned int which = 0; which < 8; ++which) {
     Claim claim;
     for (unsigned int i = 0; i < 3; ++i) {
       claim.methods.push_back(method_that((which >> i & 1U) != 0));
     }
     CHECK(name(claim.verdict()) == (which == 7 ? "true" : which == 0 ? "false" : "depends"));
+    const auto verdict = claim.verdict();
+    const Method own_number{"own", "tapstudy report", {shown("the paper's number", 2.0)}};
+    claim.methods.push_back(own_number);
+    CHECK(claim.verdict() == verdict);
+    claim.unknown_input = "the force";
+    CHECK(name(claim.verdict()) == "depends");
+    CHECK(claim.reasons().front() == "Depends on what the paper does not give: the force.");
+    claim.methods = {own_number};
+    CHECK(name(claim.verdict()) == "shown");
   }
+}
+
+TEST_CASE("a faster machine, and a formula that tapstudy took from the paper, judge nothing",
+          "[runner][reproduction]") {
+  Bench bench;
+  bench.effort = Effort::quick;
+  const std::vector<Claim> timed = step_time(bench);
+  REQUIRE(timed.size() == 1);
+  CHECK(name(timed.front().verdict()) == "shown");
+  CHECK(timed.front().methods.size() == 2);
 }
 
 TEST_CASE("a measure holds up to its limit; what is no number keeps none",

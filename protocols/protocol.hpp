@@ -288,6 +288,13 @@ struct Display {
 
 inline constexpr int max_participants = 10'000;
 
+// Modes that are left out of what is rendered: at and near every tapping point they stay so far
+// below the strongest mode there.
+struct DroppedModes {
+  double below_db{60.0};  // > 0
+  double within_m{0.03};  // of a tapping point, on the plate
+};
+
 struct Protocol {
   std::string text;           // the file, whole
   Translations translations;  // of what participants read
@@ -301,6 +308,7 @@ struct Protocol {
   double band_limit_hz{};
   double rate_hz{};
   core::RenderSettings rendering;
+  std::optional<DroppedModes> drop_modes;  // nullopt: none
   core::Placement placement;
   std::map<std::string, std::shared_ptr<const Material>> materials;
   std::map<std::string, std::shared_ptr<const Plate>> plates;

@@ -224,6 +224,17 @@ void read_rendering(MapReader& top, Protocol& protocol) {
             {"integrator",
              "of the modes: exact recurrence, or Newmark's method with beta = 1/4, gamma = 1/2"},
             {{"exact", core::Integrator::exact}, {"newmark", core::Integrator::newmark}}, "exact");
+        rendering.map(
+            {"drop_modes",
+             "leaves out modes that no tap excites: struck and felt at and around every tapping "
+             "point they stay far below the strongest mode there; unset: none"},
+            Presence::optional, [&](MapReader& drop) {
+              DroppedModes& which = protocol.drop_modes.emplace();
+              which.below_db = drop.number({"below_db", "so far below"}, {20.0, 300.0}, 60.0);
+              which.within_m = drop.number(
+                  {"within_m", "around a tapping point, on the plate; 0: the point alone"},
+                  {0.0, 10.0}, 0.03);
+            });
         read_sinusoid(rendering, settings.sinusoid);
         if (rendering.has("sinusoid") &&
             settings.sinusoid.highest_frequency_hz() >= protocol.rate_hz / 2.0) {

@@ -175,8 +175,9 @@ core::Solid solid_of(core::TriangleSurface surface, const std::string& file,
     check_count(surface);
     check_surface(surface);
   } catch (const SurfaceFault& fault) {
-    throw core::InvalidInput{fmt::format("{}; try: {}", fault.what(),
-                                         command_that_cures(surface, file, metres_per_unit))};
+    throw core::InvalidInput{
+        fmt::format("{}; try: {}; or in the study, beside the file: {}", fault.what(),
+                    command_that_cures(surface, file, metres_per_unit), key_that_cures(surface))};
   }
   std::string command = command_that_simplifies(surface, file, metres_per_unit);
   return core::Solid{std::move(surface), std::move(command)};
@@ -213,10 +214,10 @@ RepairRequest read_repair(MapReader& repair) {
 }
 
 // Made of the file once, however many plates have it, or as it is stored.
-SurfaceSource repaired_surface_of(const std::string& file, const core::TriangleSurface& surface,
+SurfaceSource repaired_surface_of(const SurfaceSource& file, const core::TriangleSurface& surface,
                                   const AskedRepair& asked, const SurfaceFiles& files,
                                   Protocol& protocol) {
-  const std::string name = repaired_name(file, asked);
+  const std::string name = repaired_name(file.file, asked);
   const auto known = std::ranges::find(protocol.surfaces, name, &SurfaceSource::file);
   if (known != protocol.surfaces.end()) {
     return *known;
@@ -253,8 +254,8 @@ core::TriangleSurface surface_asked_for(const AskedSurface& asked, const Surface
   source.noise = noise;
   if (asked.repair) {
     surface =
-        read_surface(repaired_surface_of(asked.file, surface,
-                                         {asked.metres_per_unit, *asked.repair}, files, protocol),
+        read_surface(repaired_surface_of(source, surface, {asked.metres_per_unit, *asked.repair},
+                                         files, protocol),
                      1.0)
             .surface;
   }
@@ -335,8 +336,12 @@ void read_plates(MapReader& top, Protocol& protocol, const SurfaceFiles& files,
                                    3, allowed::edge_m)}}
                              : read_surface_shape(reader, files, protocol);
         plate.mesh.order = defaults.element_order;
-        reader.map({"mesh", "settings of the tetrahedral mesh"}, Presence::optional,
-                   [&](MapReader& mesh) { read_mesh(mesh, plate.mesh); });
+        reader.map_or_word(
+            {"mesh",
+             "settings of the tetrahedral mesh; auto: order and size are chosen for a tenth of the "
+             "smallest difference between the frequencies of the study's stimuli, at most 2 %"},
+            Presence::optional, "auto", [&] { plate.mesh.is_automatic = true; },
+            [&](MapReader& mesh) { read_mesh(mesh, plate.mesh); });
         reader.list({"fixations", "regions that are held; an empty list: none"}, Presence::required,
                     [&](MapReader& fixation) {
                       plate.fixations.push_back(read_fixation(fixation, is_box));
@@ -360,10 +365,10 @@ using EndsByName = std::map<std::string, core::JointSpring::End>;  // by "body.p
 
 // Refinement follows one body's frequencies, and they have them together.
 void check_mesh(MapReader& reader, const std::string& key, const Plate& plate) {
-  if (plate.mesh.accuracy) {
-    reader.reject(key,
-                  "its mesh has an accuracy, to which bodies in contact are not refined (give "
-                  "max_tet_volume_m3)");
+  if (plate.mesh.accuracy || plate.mesh.is_automatic) {
+    reader.reject(key, fmt::format("its mesh {}, to which bodies in contact are not refined (give "
+                                   "max_tet_volume_m3)",
+                                   plate.mesh.is_automatic ? "is auto" : "has an accuracy"));
   }
 }
 

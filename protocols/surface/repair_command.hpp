@@ -9,7 +9,10 @@ namespace tapstudy::protocols {
 std::string command_that_cures(const core::TriangleSurface& surface, const std::string& file,
                                double metres_per_unit);
 
-// That for a surface which a mesher cannot fill: one of fewer triangles.
+// The key of a plate's surface that asks a study for the same.
+std::string key_that_cures(const core::TriangleSurface& surface);
+
+// The command for a surface which a mesher cannot fill: one of fewer triangles.
 std::string command_that_simplifies(const core::TriangleSurface& surface, const std::string& file,
                                     double metres_per_unit);
 }  // namespace tapstudy::protocols

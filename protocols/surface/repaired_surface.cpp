@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <mutex>
 #include <string_view>
 #include <utility>
 
@@ -31,16 +33,47 @@ std::string repaired_name(const std::string& file, const AskedRepair& asked) {
   return fmt::format("{} repaired ({}).ply", file, how);
 }
 
-SurfaceSource repaired_source(const std::string& file, const core::TriangleSurface& surface,
-                              const AskedRepair& asked) {
-  const SurfaceRepair repair = repair_surface(surface, asked.request);
+namespace {
+std::string repaired_bytes(const core::TriangleSurface& surface, const RepairRequest& request) {
+  const SurfaceRepair repair = repair_surface(surface, request);
   std::string bytes = ply_text(repair.surface);
   std::string comments;
-  for (const std::string& line : describe_changes(repair, asked.request)) {
+  for (const std::string& line : describe_changes(repair, request)) {
     comments += fmt::format("{}{}\n", comment, line);
   }
   bytes.insert(first_lines.size(), comments);
-  return repaired_source(repaired_name(file, asked), std::move(bytes));
+  return bytes;
+}
+
+// What was repaired in this process, by file's contents and name of the result: a command reads a
+// protocol several times, and repairs and measures once.
+struct Repairs {
+  std::mutex mutex;
+  std::map<std::string, std::string> bytes;
+};
+Repairs& repairs() {
+  static Repairs all;
+  return all;
+}
+}  // namespace
+
+SurfaceSource repaired_source(const SurfaceSource& file, const core::TriangleSurface& surface,
+                              const AskedRepair& asked) {
+  const std::string name = repaired_name(file.file, asked);
+  Repairs& all = repairs();
+  const std::lock_guard lock{all.mutex};
+  const std::string key = file.sha256 + " " + name;
+  auto known = all.bytes.find(key);
+  if (known == all.bytes.end()) {
+    known = all.bytes.emplace(key, repaired_bytes(surface, asked.request)).first;
+  }
+  return repaired_source(name, known->second);
+}
+
+std::size_t repairs_made() {
+  Repairs& all = repairs();
+  const std::lock_guard lock{all.mutex};
+  return all.bytes.size();
 }
 
 SurfaceSource repaired_source(const std::string& name, std::string bytes) {

@@ -18,9 +18,12 @@ struct AskedRepair {
 std::string repaired_name(const std::string& file, const AskedRepair& asked);
 
 // The result as it is stored with a study: under that name a PLY in metres, whose comments say what
-// changed. Throws as repair_surface.
-SurfaceSource repaired_source(const std::string& file, const core::TriangleSurface& surface,
+// changed; made once in a process, however often a protocol is read. surface: as read of the file.
+// Throws as repair_surface.
+SurfaceSource repaired_source(const SurfaceSource& file, const core::TriangleSurface& surface,
                               const AskedRepair& asked);
+// How many different ones this process has made.
+std::size_t repairs_made();
 
 // The same from its bytes.
 SurfaceSource repaired_source(const std::string& name, std::string bytes);

@@ -82,6 +82,11 @@ void make_list_too(SchemaJson& mapping, const std::vector<std::string>& keys) {
   }
 }
 
+void make_word_too(SchemaJson& mapping, const std::string& word) {
+  mapping["type"] = {"object", "string"};
+  mapping["pattern"] = "^" + word + "$";
+}
+
 std::string described_word(Description& pass, const Key& key,
                            const std::vector<std::string>& allowed,
                            const std::optional<std::string>& otherwise) {

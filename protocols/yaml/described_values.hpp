@@ -19,6 +19,8 @@ SchemaJson described_empty(bool is_optional);
 SchemaJson described_empty_list(bool is_optional);
 // A mapping that may also be given as a list of the values of these keys.
 void make_list_too(SchemaJson& mapping, const std::vector<std::string>& keys);
+// In whose place this word may stand.
+void make_word_too(SchemaJson& mapping, const std::string& word);
 
 template <class Value>
 SchemaJson described_default(const std::optional<Value>& otherwise) {

@@ -36,7 +36,7 @@ std::string MapReader::schema_of(const std::string& title, const std::string& ab
 }
 
 void MapReader::describe_inner(const Key& key, Presence presence, Shape shape, const ReadMap& read,
-                               const std::vector<std::string>& as_list) {
+                               const std::vector<std::string>& as_list, const std::string& word) {
   problems_->add_unread();
   SchemaJson schema =
       described_mapping(pattern_of(key.name), pass_->known_mappings(), [&](Description& pass) {
@@ -56,6 +56,9 @@ void MapReader::describe_inner(const Key& key, Presence presence, Shape shape, c
   }
   if (!as_list.empty()) {
     make_list_too(schema, as_list);
+  }
+  if (!word.empty()) {
+    make_word_too(schema, word);
   }
   pass_->add(
       key, std::move(schema), !is_optional,
@@ -105,6 +108,23 @@ void MapReader::map_or_list(const Key& key, Presence presence, const std::vector
   MapReader inner{mapping, path_of(key.name), pattern_of(key.name), *problems_, translations_};
   inner.list_ = std::make_unique<YAML::Node>(*node);
   read(inner);
+}
+
+void MapReader::map_or_word(const Key& key, Presence presence, const std::string& word,
+                            const std::function<void()>& take, const ReadMap& read) {
+  if (pass_ != nullptr) {
+    describe_inner(key, presence, Shape::mapping, read, {}, word);
+    return;
+  }
+  const auto node = find(key.name, presence != Presence::optional);
+  if (node && node->IsScalar() && node->Scalar() == word) {
+    take();
+  } else if (node && !node->IsMap()) {
+    reject_at(*node, path_of(key.name),
+              fmt::format("{} is neither a mapping nor '{}'", kind_of(*node), word));
+  } else if (node) {
+    read_inner(*node, path_of(key.name), pattern_of(key.name), read);
+  }
 }
 
 std::optional<YAML::Node> MapReader::find_map(const std::string& key, Presence presence) {

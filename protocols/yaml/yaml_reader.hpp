@@ -159,6 +159,9 @@ class MapReader {
   // may be left out.
   void map_or_list(const Key& key, Presence presence, const std::vector<std::string>& keys,
                    const ReadMap& read);
+  // The same, or in its place one word.
+  void map_or_word(const Key& key, Presence presence, const std::string& word,
+                   const std::function<void()>& take, const ReadMap& read);
   // A mapping from free names to mappings / to two numbers / to text; a list of mappings.
   void each(const Key& key, Presence presence, const ReadNamed& read);
   void each_point(const Key& key, Presence presence,
@@ -180,7 +183,7 @@ class MapReader {
   enum class Shape { mapping, named, list };
   // Without a file: what the inner reader asks for.
   void describe_inner(const Key& key, Presence presence, Shape shape, const ReadMap& read,
-                      const std::vector<std::string>& as_list = {});
+                      const std::vector<std::string>& as_list = {}, const std::string& word = {});
   MapReader(const YAML::Node& node, std::string path, std::string pattern, Problems& problems,
             Translations* translations);
   std::string any_text(const Key& key, const std::optional<std::string>& otherwise, TextLines lines,

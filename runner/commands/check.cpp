@@ -98,12 +98,7 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
       const core::FrequencyErrors errors =
           core::frequency_errors(*body, plate_spec(protocol, own).material, protocol.band_limit_hz);
       fmt::print("    {}\n", describe_errors(errors));
-      const Eigen::Index unfelt = modes_out_of_reach(*plate, own);
-      if (unfelt > 0) {
-        fmt::print(
-            "    modes that move less than 1 % of the strongest at every tapping point: {}\n",
-            unfelt);
-      }
+      fmt::print("{}", describe_spending(protocol, own, models));
       warnings += note_of_relaxation(own, report) + warning_of_order(own, report) +
                   warning_of_errors(stimulus.name, errors);
     }

@@ -87,24 +87,6 @@ void print_families(const protocols::Protocol& protocol, ModelLibrary& models) {
 }
 
 namespace {
-core::Contact contact_from_above(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m) {
-  constexpr double far_m = 100.0;
-  core::Contact contact;
-  contact.god_object_m << at_m, 0.0;
-  if (plate.triangles) {
-    const core::Vec3 above{at_m.x(), at_m.y(), far_m};
-    const core::Vec3 below{at_m.x(), at_m.y(), -far_m};
-    const auto entry = plate.triangles->first_entered(above, below, 0.0);
-    contact.triangle = entry.triangle;
-    if (entry.triangle != core::TriangleTree::none) {
-      contact.god_object_m = above + entry.along * (below - above);
-      contact.normal = plate.triangles->normal(entry.triangle);
-      contact.barycentric = plate.triangles->barycentric(entry.triangle, contact.god_object_m);
-    }
-  }
-  return contact;
-}
-
 struct Strike {
   std::string point;
   double energy_share{};
@@ -119,37 +101,51 @@ Strike strongest(const core::VibratingPlate& plate, const protocols::PresentedSt
 }
 }  // namespace
 
-namespace {
-// Each mode's displacement along the normal where the plate is met from above [kg^-1/2]; 0 where it
-// is not.
-Eigen::RowVectorXd modes_at(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m) {
-  Eigen::RowVectorXd along = Eigen::RowVectorXd::Zero(plate.model.shape.cols());
-  const core::Contact contact = contact_from_above(plate, at_m);
-  if (plate.triangles && contact.triangle == core::TriangleTree::none) {
-    return along;
-  }
-  const core::SurfacePoint place = plate.place_of(contact);
-  for (std::size_t i = 0; i < place.count; ++i) {
-    const auto rows = plate.model.shape.middleRows<3>(3 * Eigen::Index{place.nodes[i]});
-    along += place.weights[i] * (contact.normal.transpose() * rows);
-  }
-  return along;
-}
-}  // namespace
-
 double impact_energy_share(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m,
                            double finger_kg) {
   return finger_kg * modes_at(plate, at_m).squaredNorm();
 }
 
-Eigen::Index modes_out_of_reach(const core::VibratingPlate& plate,
-                                const protocols::PresentedStimulus& stimulus) {
-  constexpr double still = 0.01;
-  Eigen::RowVectorXd most = Eigen::RowVectorXd::Zero(plate.model.shape.cols());
-  for (const auto& [name, at_m] : stimulus.plate->tapping_points_m) {
-    most = most.cwiseMax(modes_at(plate, at_m).cwiseAbs());
+namespace {
+std::string describe_accuracy(const core::Meshing& mesh, const AutomaticMesh& automatic) {
+  if (!mesh.is_automatic) {
+    return mesh.accuracy ? fmt::format("an accuracy of {:.2g} %", 100.0 * *mesh.accuracy)
+                         : std::string{"the stated mesh, no accuracy is asked for"};
   }
-  return most.size() == 0 ? 0 : (most.array() <= still * most.maxCoeff()).count();
+  const auto& difference = automatic.difference;
+  return fmt::format(
+      "an accuracy of {:.2g} % (mesh: auto{})", 100.0 * automatic.accuracy,
+      difference ? fmt::format("; {} and {} differ by {:.2g} %, the least", difference->first,
+                               difference->second, 100.0 * difference->relative)
+                 : std::string{});
+}
+}  // namespace
+
+std::string describe_spending(const protocols::Protocol& protocol,
+                              const protocols::PresentedStimulus& stimulus, ModelLibrary& models) {
+  const auto body = models.body_of(protocol, stimulus);
+  const core::PlateSpec spec = plate_spec(protocol, stimulus);
+  const core::VibratingPlate whole = vibrating_plate(spec.shape, core::model_of(*body, spec));
+  const auto which = protocol.drop_modes.value_or(protocols::DroppedModes{});
+  const auto unfelt = unfelt_modes(whole, stimulus, which);
+  const Eigen::Index all = whole.model.frequency_hz.size();
+  const Eigen::Index rendered = models.plate_of(protocol, stimulus)->model.frequency_hz.size();
+  const bool is_automatic = spec.mesh.is_automatic;
+  std::string lines = fmt::format(
+      "    spent: {} degrees of freedom, {:.3g} s and {:.3g} s of estimating, for {}; {} of {} in "
+      "each tick\n",
+      body->report.dofs, body->report.cost.total_s(), body->estimate.seconds,
+      describe_accuracy(spec.mesh,
+                        is_automatic ? models.automatic_mesh(protocol) : AutomaticMesh{}),
+      rendered, counted(static_cast<std::size_t>(all), "mode"));
+  if (!unfelt.empty()) {
+    lines += fmt::format(
+        "    {} modes that no tap within {} m of a tapping point excites ({:.0f} dB below the "
+        "strongest there): {}\n",
+        protocol.drop_modes ? "dropped:" : "rendering.drop_modes would leave out", which.within_m,
+        which.below_db, describe(unfelt));
+  }
+  return lines;
 }
 
 void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& models) {

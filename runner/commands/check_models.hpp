@@ -12,10 +12,11 @@ void print_families(const protocols::Protocol& protocol, ModelLibrary& models);
 // finger gives more than it has. at_m: on the plate from above, plate frame.
 double impact_energy_share(const core::VibratingPlate& plate, const Eigen::Vector2d& at_m,
                            double finger_kg);
-// How many modes of the band move, at every tapping point, by a hundredth or less of what the mode
-// that moves most there does: what the model spends on modes that nobody taps.
-Eigen::Index modes_out_of_reach(const core::VibratingPlate& plate,
-                                const protocols::PresentedStimulus& stimulus);
+// What a stimulus's model spends, and what for: unknowns and seconds for an accuracy; modes of the
+// band in each tick, and those that no tap excites by name, with the level that they have, or would
+// have. A line each.
+std::string describe_spending(const protocols::Protocol& protocol,
+                              const protocols::PresentedStimulus& stimulus, ModelLibrary& models);
 // Prints a warning for each stimulus with a tapping point where it is above 1, and one for each
 // that can move as a rigid body, which no technique renders.
 void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& models);

@@ -151,6 +151,10 @@ std::string range_of(const Json& schema) {
   if (schema.contains("prefixItems")) {
     return range_of_listable(schema);
   }
+  if (schema.contains("properties") && schema.contains("pattern")) {
+    const auto pattern = schema["pattern"].get<std::string>();
+    return fmt::format("mapping, or {}", code(pattern.substr(1, pattern.size() - 2)));
+  }
   return is_translated(schema) ? "text, or one for each language"
                                : range_of_type(schema.value("type", Json{}), schema);
 }

@@ -218,7 +218,10 @@ void run_modes(const ModesOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const protocols::PresentedStimulus stimulus =
       member_set_to(options.settings, protocol, protocol.stimulus(options.stimulus));
-  const core::PlateSpec spec = plate_spec(protocol, stimulus);
+  core::PlateSpec spec = plate_spec(protocol, stimulus);
+  if (spec.mesh.is_automatic) {
+    spec.mesh.accuracy = ModelLibrary{}.automatic_mesh(protocol).accuracy;
+  }
   if (stimulus.technique->needs_beam() &&
       !(options.mesh_out.empty() && options.vtu.empty() && options.uff.empty())) {
     throw core::InvalidInput{fmt::format(

@@ -184,6 +184,7 @@ std::optional<RenderedModel> model_of(const Protocol& protocol, const Stimulus& 
                        found->report.nodes,
                        found->report.tets,
                        found->report.worst_residual,
+                       describe(found->dropped),
                        largest_error(found->errors)};
 }
 

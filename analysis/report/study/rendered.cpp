@@ -278,6 +278,12 @@ void say_what_is_missing(const RenderedStudy& study, ReportSection& section) {
           "tetrahedra.",
           stimulus.label, stimulus.model->relaxed_radius_edge_ratio));
     }
+    if (stimulus.model && !stimulus.model->dropped.empty()) {
+      section.remarks.push_back(fmt::format(
+          "Modes of {} that no tap excites were not rendered; below the strongest mode at every "
+          "tapping point they would have been by: {}.",
+          stimulus.label, stimulus.model->dropped));
+    }
   }
   if (std::ranges::any_of(study.stimuli, is_orthotropic)) {
     section.remarks.emplace_back(

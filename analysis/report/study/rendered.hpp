@@ -31,6 +31,7 @@ struct RenderedModel {
   int nodes{};
   int tets{};
   double worst_residual{};  // of the eigenpairs
+  std::string dropped;      // "143 Hz (-92 dB)": modes in the band that are not rendered
   // The largest estimated relative error of a frequency, by elements of the next order; unset: not
   // estimated, or there is no mode.
   std::optional<double> estimated_error{};

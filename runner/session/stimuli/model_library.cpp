@@ -54,6 +54,35 @@ std::string damping_key(const protocols::PresentedStimulus& stimulus) {
   }
   return key;
 }
+
+// Of all on which it depends which modes are rendered; empty where all are.
+std::string dropped_key(const protocols::Protocol& protocol,
+                        const protocols::PresentedStimulus& stimulus) {
+  if (!protocol.drop_modes) {
+    return {};
+  }
+  const core::Finger& finger = stimulus.rendering.finger;
+  std::string key = fmt::format(" {:a} {:a} {:a} {:a}", protocol.drop_modes->below_db,
+                                protocol.drop_modes->within_m, finger.stiffness_n_per_m,
+                                finger.damping_n_s_per_m);
+  for (const auto& [name, at_m] : stimulus.plate->tapping_points_m) {
+    key += fmt::format(" {:a},{:a}", at_m.x(), at_m.y());
+  }
+  return key;
+}
+
+bool chooses_mesh(const core::Plate& plate) {
+  return plate.mesh.is_automatic && plate.theory == core::Theory::solid;
+}
+
+core::BodySpec body_as_accurate(const protocols::Protocol& protocol,
+                                const protocols::PresentedStimulus& stimulus, double accuracy) {
+  core::BodySpec spec = body_spec(protocol, stimulus);
+  if (chooses_mesh(spec)) {
+    spec.mesh.accuracy = accuracy;
+  }
+  return spec;
+}
 }  // namespace
 
 void check_has_mode(Eigen::Index modes_in_band, const core::PlateSpec& spec) {
@@ -110,7 +139,30 @@ core::VibratingPlate vibrating_plate(const core::Shape& shape, core::ModalModel 
 ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
                                       const protocols::PresentedStimulus& stimulus) {
   core::check_material(*stimulus.material);
-  const core::BodySpec spec = body_spec(protocol, stimulus);
+  core::BodySpec spec = body_spec(protocol, stimulus);
+  if (chooses_mesh(spec)) {
+    spec.mesh.accuracy = mesh_for(protocol).accuracy;
+  }
+  return solved_once(spec, stimulus.name);
+}
+
+AutomaticMesh ModelLibrary::mesh_for(const protocols::Protocol& protocol) {
+  const auto find = [&](const protocols::PresentedStimulus& stimulus, double accuracy) -> Body {
+    try {
+      return solved_once(body_as_accurate(protocol, stimulus, accuracy), stimulus.name);
+    } catch (const core::ModelError&) {  // told at its own line, once it is built itself
+      return nullptr;
+    }
+  };
+  return runner::automatic_mesh(protocol, find).value_or(AutomaticMesh{});
+}
+
+AutomaticMesh ModelLibrary::automatic_mesh(const protocols::Protocol& protocol) {
+  const std::lock_guard lock{mutex_};
+  return mesh_for(protocol);
+}
+
+ModelLibrary::Body ModelLibrary::solved_once(const core::BodySpec& spec, const std::string& name) {
   const std::string key = core::content_key(spec);
   Body& body = bodies_[key];
   if (body) {
@@ -120,7 +172,7 @@ ModelLibrary::Body ModelLibrary::body(const protocols::Protocol& protocol,
     body = std::make_shared<const core::BodyModes>(std::move(*kept));
     return body;
   }
-  Progress progress{fmt::format("building the model of '{}'", stimulus.name)};
+  Progress progress{fmt::format("building the model of '{}'", name)};
   body = std::make_shared<const core::BodyModes>(
       core::solve_body(spec, progress.hook(), estimation_).modes);
   ++solved_;
@@ -143,7 +195,7 @@ ModelLibrary::Plate ModelLibrary::make_plate(const protocols::Protocol& protocol
     core::ModalModel model = core::model_of(*body(protocol, stimulus), spec);
     check_has_mode(model.frequency_hz.size(), spec);
     return std::make_shared<const core::VibratingPlate>(
-        vibrating_plate(spec.shape, std::move(model)));
+        vibrating_plate(spec.shape, rendered_model(protocol, stimulus, std::move(model))));
   });
 }
 
@@ -153,8 +205,9 @@ ModelLibrary::Plate ModelLibrary::plate_of(const protocols::Protocol& protocol,
   if (!stimulus.changed.empty()) {
     return make_plate(protocol, stimulus);
   }
-  Plate& plate = plates_[fmt::format("{} {} {:a}", core::content_key(body_spec(protocol, stimulus)),
-                                     damping_key(stimulus), protocol.band_limit_hz)];
+  Plate& plate = plates_[fmt::format(
+      "{} {} {:a}{}", core::content_key(body_spec(protocol, stimulus)), damping_key(stimulus),
+      protocol.band_limit_hz, dropped_key(protocol, stimulus))];
   if (!plate) {
     plate = make_plate(protocol, stimulus);
   }
@@ -221,12 +274,25 @@ std::optional<CachedModel> cached_model(const protocols::Protocol& protocol,
                                         const protocols::Stimulus& stimulus,
                                         const core::ModelCache& cache) {
   const protocols::PresentedStimulus presented = protocols::stimulus_with(protocol, stimulus);
-  const auto body = cache.find(core::content_key(body_spec(protocol, presented)));
+  const auto find = [&](const protocols::PresentedStimulus& one,
+                        double accuracy) -> std::shared_ptr<const core::BodyModes> {
+    auto kept = cache.find(core::content_key(body_as_accurate(protocol, one, accuracy)));
+    return kept ? std::make_shared<const core::BodyModes>(std::move(*kept)) : nullptr;
+  };
+  const auto mesh = has_automatic_mesh(protocol) ? automatic_mesh(protocol, find)
+                                                 : std::optional{AutomaticMesh{}};
+  const auto body = mesh ? find(presented, mesh->accuracy) : nullptr;
   if (!body) {
     return std::nullopt;
   }
   const core::PlateSpec plate = plate_spec(protocol, presented);
-  return CachedModel{core::model_of(*body, plate), body->report,
+  core::ModalModel all = core::model_of(*body, plate);
+  std::vector<UnfeltMode> dropped;
+  if (protocol.drop_modes && all.frequency_hz.size() > 0) {
+    dropped = unfelt_modes(vibrating_plate(plate.shape, all), presented, *protocol.drop_modes);
+  }
+  return CachedModel{rendered_model(protocol, presented, std::move(all)), std::move(dropped),
+                     body->report,
                      core::frequency_errors(*body, plate.material, plate.band_limit_hz)};
 }
 }  // namespace tapstudy::runner

@@ -16,6 +16,8 @@
 #include "core/tick/vibrating_plate.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/protocol.hpp"
+#include "runner/session/stimuli/felt_modes.hpp"
+#include "runner/session/stimuli/mesh_accuracy.hpp"
 namespace tapstudy::runner {
 // Builds something of a stimulus's model. A ModelError names the protocol's line at fault, the
 // stimulus and the values at which it is presented.
@@ -82,11 +84,16 @@ class ModelLibrary {
   // built of them, so that errors are reported first.
   void build_all(const protocols::Protocol& protocol);
 
+  // What `mesh: auto` asks for in this study: its bodies are solved to the usual accuracy for that.
+  AutomaticMesh automatic_mesh(const protocols::Protocol& protocol);
+
   int bodies_solved() const { return solved_; }  // not found in memory or on disk
   int bodies_used() const { return static_cast<int>(bodies_.size()); }
 
  private:
   Body body(const protocols::Protocol& protocol, const protocols::PresentedStimulus& stimulus);
+  Body solved_once(const core::BodySpec& spec, const std::string& name);
+  AutomaticMesh mesh_for(const protocols::Protocol& protocol);
   Plate make_plate(const protocols::Protocol& protocol,
                    const protocols::PresentedStimulus& stimulus);
 
@@ -113,7 +120,8 @@ TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
                                  const std::vector<std::string>& stimuli, ModelLibrary& models);
 
 struct CachedModel {
-  core::ModalModel modal;    // the modes in the band
+  core::ModalModel modal;  // the modes in the band that are rendered
+  std::vector<UnfeltMode> dropped;
   core::ModelReport report;  // of the body that it is scaled from
   core::FrequencyErrors errors;
 };

@@ -13,6 +13,7 @@
 #include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/repair_command.hpp"
 #include "protocols/surface/repair_surface.hpp"
+#include "protocols/surface/repaired_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
 #include "support/catch.hpp"
 #include "support/surfaces.hpp"
@@ -330,9 +331,16 @@ std::string refusal_with(const std::string& repair, const std::string& surface) 
 TEST_CASE("a surface is repaired where its protocol asks for that, and nowhere else",
           "[protocols][surface][repair]") {
   CHECK_THAT(refusal_with("offset_m: [0, 0, 0]", open_tetrahedron()),
-             Contains("surface.file") && Contains("try: tapstudy repair"));
+             Contains("surface.file") && Contains("try: tapstudy repair") &&
+                 Contains("in the study, beside the file: repair: {wrap_m: 0.0094, "
+                          "largest_piece: true, max_triangles: 20000}"));
+  const std::size_t made_before = protocols::repairs_made();
   const protocols::Protocol repaired =
       protocol_with("repair: {largest_hole_m: 2}", open_tetrahedron());
+  CHECK(protocols::repairs_made() == made_before + 1);
+  CHECK(protocol_with("repair: {largest_hole_m: 2}", open_tetrahedron()).surfaces[1].bytes ==
+        repaired.surfaces[1].bytes);
+  CHECK(protocols::repairs_made() == made_before + 1);
   CHECK(are_bitwise_equal(
       tetrahedron_of(repaired),
       tetrahedron_of(protocol_with("repair: {largest_hole_m: 2}", whole_tetrahedron()))));

@@ -249,7 +249,13 @@ std::string device_unplugged(BridgedDevice& row) {
 }
 
 std::string device_lost(BridgedDevice& row) {
-  return found(row, &BridgedDevice::lose_position, {});
+  Pressed pressed{row};
+  row.lose_position();
+  while (press(pressed.hand, pressed_n) != TickFault::amplifier_off) {
+  }
+  const std::string said{pressed.hand.text()};
+  wait_until([&] { return row.exerted_n() == 0.0; });
+  return fmt::format("'{}', force off", said);
 }
 
 // It may go on, or let go where it waits for the other half in vain.
@@ -284,26 +290,6 @@ std::string numbers_jump(BridgedDevice& row) {
 }
 
 constexpr const char* tells_no_force = "does not apply: the device measures no force";
-
-// Taps of 60 ms, told so many milliseconds late.
-std::string force_late(BridgedDevice& row) {
-  if (row.numbering() == nullptr) {
-    return tells_no_force;
-  }
-  constexpr int tap_ms = 60;
-  constexpr int longest_ms = 50;
-  for (const int late_ms : {0, 5, 15, longest_ms}) {
-    Pressed pressed{row};
-    row.numbering()->tell_force_late(static_cast<std::size_t>(late_ms));
-    bool is_believed = true;
-    for (int ms = 0; is_believed && (ms < 10 * tap_ms || late_ms == longest_ms); ++ms) {
-      is_believed = press(pressed.hand, ms / tap_ms % 2 == 0 ? pressed_n : 0.0, 1e-3) !=
-                    TickFault::force_not_followed;
-    }
-    CHECK(is_believed == (late_ms < longest_ms));
-  }
-  return "0, 5 and 15 ms are believed, 50 ms are a fault";
-}
 
 std::string never_lets_go(BridgedDevice& row) {
   if (row.numbering() == nullptr) {
@@ -377,7 +363,6 @@ TEST_CASE(
                                       {"NaN", device_lost},
                                       {"every second sample", every_other},
                                       {"sample number jumps", numbers_jump},
-                                      {"force told late", force_late},
                                       {"never lets go", never_lets_go},
                                       {"second sender", second_sender}};
   for (const BridgeCell& cell : cells) {

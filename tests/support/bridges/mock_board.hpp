@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <deque>
 #include <limits>
 #include <string>
 #include <thread>
@@ -65,8 +64,6 @@ class MockBoard {
   void answer_every_other() { answers_every_other_ = true; }
   // Exerts, and tells, what it does now, whatever it is sent.
   void hold() { is_holding_ = true; }
-  // The force that it tells is of so many samples ago.
-  void tell_force_late(std::size_t samples) { lag_ = samples; }
   void unplug() {
     if (obeying_.joinable()) {
       is_over_ = true;
@@ -121,12 +118,10 @@ class MockBoard {
     Bytes content{1, 0};
     const std::uint32_t sample = ++sample_;
     add(content, sample);
-    told_n_.push_front(force_n_);
-    told_n_.resize(lag_ + 1);
     const float position_m = is_lost_ ? not_measured : 0.02F;
     const float tremor_m = tremor_m_ * std::sin(0.06F * static_cast<float>(sample));
     for (const float value : {0.01F + tremor_m, position_m, 0.03F, not_measured, not_measured,
-                              not_measured, 0.0F, told_n_.back(), 0.0F}) {
+                              not_measured, 0.0F, force_n_.load(), 0.0F}) {
       add(content, value);
     }
     add(content, std::uint16_t{5});
@@ -177,8 +172,6 @@ class MockBoard {
   std::atomic<bool> is_lost_{false};
   std::atomic<bool> is_holding_{false};
   std::atomic<bool> answers_every_other_{false};
-  std::atomic<std::size_t> lag_{0};
-  std::deque<float> told_n_;  // the newest first
   int asked_{0};
   std::atomic<std::uint32_t> sample_{0};
   std::thread obeying_;

@@ -15,8 +15,17 @@ constexpr int patience_ms = 5000;  // for another process that is writing
 // What SQLite's words do not say.
 const char* hint_for(int code) {
   constexpr int primary = 0xff;
-  if (code == SQLITE_IOERR_WRITE) {
-    return " (is the disk full?)";
+  switch (code) {
+    case SQLITE_IOERR_WRITE:
+      return " (is the disk full?)";
+    case SQLITE_IOERR_LOCK:
+    case SQLITE_IOERR_RDLOCK:
+    case SQLITE_IOERR_UNLOCK:
+    case SQLITE_IOERR_CHECKRESERVEDLOCK:
+    case SQLITE_IOERR_SHMLOCK:
+      return " (the file system knows no locks: a study belongs on a disk of this machine)";
+    default:
+      break;
   }
   switch (code & primary) {
     case SQLITE_FULL:

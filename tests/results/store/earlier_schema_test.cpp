@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/files/sha256.hpp"
+#include "results/export/study_export.hpp"
 #include "results/store/redacted_copy.hpp"
 #include "results/store/schema.hpp"
 #include "results/store/sqlite.hpp"
@@ -11,12 +12,12 @@ using namespace tapstudy::results;
 namespace small_study = testing::small_study;
 
 namespace {
-// As a program makes it that knows no groups.
-void make_without_groups(const std::string& directory) {
+// As a program of that version makes it.
+void make_store(const std::string& directory, int version) {
   Database database{directory + "/study.db", Database::Access::write};
-  database.run(schema_sql_of(first_schema_version));
-  database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", application_id,
-                           first_schema_version));
+  database.run(schema_sql_of(version));
+  database.run(
+      fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", application_id, version));
   Statement{database, "INSERT INTO study VALUES (1, ?, ?, ?, ?, '')"}
       .bind(small_study::study.title)
       .bind(small_study::study.protocol_file)
@@ -30,31 +31,51 @@ std::int64_t version_of(const std::string& directory) {
 }
 }  // namespace
 
-TEST_CASE("a store from before there were groups is read and goes on as it is",
+TEST_CASE("a store of each earlier schema is read and goes on as it is",
           "[results][store][groups]") {
   // of the text that programs of that version make their stores by
-  CHECK(core::sha256(schema_sql_of(first_schema_version)) ==
-        "7e77cbb73ce6c7294ccac40232ca5317a3f2b615c31fc0f46dc8cdcbed082e7f");
-  CHECK(core::sha256(schema_sql_of(first_version_with_groups)) ==
-        "6ecb5af0567783bc20ac24202e82238d73133c53422cc2c40c888bd5fda735da");
+  const auto [version, sha256] = GENERATE(table<int, std::string>(
+      {{first_schema_version, "7e77cbb73ce6c7294ccac40232ca5317a3f2b615c31fc0f46dc8cdcbed082e7f"},
+       {first_version_with_groups,
+        "6ecb5af0567783bc20ac24202e82238d73133c53422cc2c40c888bd5fda735da"}}));
+  CAPTURE(version);
+  CHECK(core::sha256(schema_sql_of(version)) == sha256);
+  const bool has_groups = version >= first_version_with_groups;
   const testing::TempDirectory directory;
-  make_without_groups(directory.path());
+  make_store(directory.path(), version);
   {
     auto [store, row] = small_study::begun_study(directory.path());
     store.add_trial(small_study::trial(row.id, 1, "a"));
-    CHECK_FALSE(store.has_groups());
     SessionRow grouped = small_study::session("P02");
+    grouped.participant_index = 1;
     grouped.group = GroupRow{"trained"};
-    CHECK_THROWS_AS(store.add_session(grouped), StoreError);
+    if (has_groups) {
+      store.add_session(grouped);
+    } else {
+      CHECK_THROWS_AS(store.add_session(grouped), StoreError);
+    }
+    CHECK(store.has_groups() == has_groups);
   }
-  CHECK(version_of(directory.path()) == first_schema_version);
+  CHECK(version_of(directory.path()) == version);
   Store store = Store::open_existing(directory.path());
-  REQUIRE(store.sessions().size() == 1);
+  REQUIRE(store.sessions().size() == (has_groups ? 2 : 1));
   CHECK_FALSE(store.sessions().front().group);
   CHECK(store.answered_trials("P01") == std::vector<int>{1});
   const testing::TempDirectory copy;
   write_redacted_copy(directory.path(), copy.path(), {});
   CHECK(Store::open_existing(copy.path()).answered_trials("person-001") == std::vector<int>{1});
+  study_tables(store, {});
+}
+
+TEST_CASE("a store of an unknown schema is refused, and says which are read", "[results][store]") {
+  const testing::TempDirectory directory;
+  make_store(directory.path(), schema_version);
+  const int unknown = GENERATE(first_schema_version - 1, schema_version + 1);
+  Database{directory.path() + "/study.db", Database::Access::write}.run(
+      fmt::format("PRAGMA user_version = {}", unknown));
+  CHECK_THROWS_WITH(Store::open_existing(directory.path()),
+                    Contains(fmt::format("has schema {}, this program reads {} to {}", unknown,
+                                         first_schema_version, schema_version)));
 }
 
 TEST_CASE("a participant's group is stored, journalled and kept in a redacted copy",

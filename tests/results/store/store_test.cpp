@@ -1,7 +1,9 @@
 #include "results/store/store.hpp"
 
+#include <sqlite3.h>
 #include <sys/stat.h>
 
+#include <cerrno>
 #include <filesystem>
 
 #include "core/error.hpp"
@@ -92,6 +94,27 @@ TEST_CASE("the study of another protocol is left alone", "[results][store]") {
   const StudyRow other{"another", "other.yaml", "x", sha256("x"), {}};
   CHECK_THROWS_AS(Store::open_or_create(directory.path(), other), core::InvalidInput);
   CHECK(Store::open_existing(directory.path()).study().title == "a study");
+}
+
+namespace {
+int error_of_locks = 0;
+int without_locks(int /*descriptor*/, int /*command*/, void* /*lock*/) {
+  errno = error_of_locks;
+  return -1;
+}
+}  // namespace
+
+TEST_CASE("a file system that knows no locks is named, and nothing is stored on it",
+          "[results][store]") {
+  error_of_locks = GENERATE(EOPNOTSUPP, ENOSYS);
+  const testing::TempDirectory directory;
+  sqlite3_vfs* const files = sqlite3_vfs_find(nullptr);
+  const auto real = files->xGetSystemCall(files, "fcntl");
+  files->xSetSystemCall(files, "fcntl", reinterpret_cast<sqlite3_syscall_ptr>(without_locks));
+  CHECK_THROWS_WITH(Store::open_or_create(directory.path(), study),
+                    Contains("study.db: ") && Contains("knows no locks"));
+  files->xSetSystemCall(files, "fcntl", real);
+  CHECK(std::filesystem::file_size(directory / "study.db") == 0);
 }
 
 TEST_CASE("what is not a study is refused", "[results][store]") {

@@ -71,9 +71,9 @@ std::optional<Interval> bca_interval(const std::vector<double>& values, int draw
 // The 95 % interval of a mean by that bootstrap. Its tails are expanded for few values (Hesterberg
 // 2015), as far as the bootstrap's own spread, too small by sqrt(1 - 1 / n), would make it shorter
 // than that by t: of five values it would hold the mean in 83 % of samples. Throws and unset as
-// bca_interval; unset also for fewer than five values, between whose least and largest every drawn
-// mean lies: of three it holds the mean in 77 % of samples.
-inline constexpr std::size_t fewest_to_draw_from = 5;
+// bca_interval; unset also for fewer than eight values, between whose least and largest every drawn
+// mean lies: of three it holds the mean in 77 % of samples, of five that are skewed in 87 %.
+inline constexpr std::size_t fewest_to_draw_from = 8;
 std::optional<Interval> bootstrap_interval(const std::vector<double>& values, int draws,
                                            std::uint64_t seed);
 

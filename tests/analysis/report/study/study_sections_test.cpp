@@ -195,7 +195,7 @@ TEST_CASE("levels on both sides of a standard are averaged as they are", "[analy
 }
 
 namespace {
-constexpr int people = 7;
+constexpr int people = 9;
 const std::vector<std::string> scales{"mental_demand", "physical_demand", "temporal_demand",
                                       "performance",   "effort",          "frustration"};
 

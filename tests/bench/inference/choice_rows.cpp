@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "analysis/statistics/friedman_test.hpp"
 #include "analysis/statistics/population/means.hpp"
@@ -70,6 +72,33 @@ analysis::RatingTable places_of(const StudyDraw& draw) {
   return places;
 }
 
+double squares_of_sums(const analysis::RatingTable& ranks) {
+  std::vector<double> sums(ranks.front().size(), 0.0);
+  for (const auto& of_person : ranks) {
+    std::ranges::transform(sums, of_person, sums.begin(), std::plus<>{});
+  }
+  return std::inner_product(sums.begin(), sums.end(), sums.begin(), 0.0);
+}
+
+// With the probability of what is further by 999 shuffles of each participant's ranks.
+std::optional<Outcome> friedman(const analysis::RatingTable& table, core::Rng& rng) {
+  const double p = analysis::friedman_test(table, 1).p;
+  analysis::RatingTable ranks;
+  for (const auto& of_person : table) {
+    ranks.push_back(analysis::mid_ranks(of_person));
+  }
+  const double limit = squares_of_sums(ranks) + 1e-6;
+  constexpr int shuffles = 999;
+  int further = 0;
+  for (int i = 0; i < shuffles; ++i) {
+    for (auto& of_person : ranks) {
+      rng.shuffle(of_person);
+    }
+    further += squares_of_sums(ranks) > limit ? 1 : 0;
+  }
+  return Outcome{p, std::min(p, static_cast<double>(further) / shuffles)};
+}
+
 std::optional<Outcome> any_pair(const analysis::RatingTable& table) {
   double least = 1.0;
   for (const auto& pair : analysis::pairwise_signed_rank(table)) {
@@ -125,15 +154,11 @@ std::vector<Row> rows_of_choices() {
       {coverage, "choice", "a share of 1/2 (Wilson)", By::people, share_chosen},
       {coverage, "choice", "three shares at once (Goodman)", By::people, shares_at_once},
       {size, "ranking", "Friedman", By::people,
-       [](const StudyDraw& draw) {
-         return std::optional{Outcome{analysis::friedman_test(places_of(draw), 1).p}};
-       }},
+       [](const StudyDraw& draw) { return friedman(places_of(draw), draw.rng); }},
       {size, "ranking", "any pair, after Holm", By::people,
        [](const StudyDraw& draw) { return any_pair(places_of(draw)); }},
       {size, "rating", "Friedman", By::people,
-       [](const StudyDraw& draw) {
-         return std::optional{Outcome{analysis::friedman_test(ratings_of(draw, 0.0), 1).p}};
-       }},
+       [](const StudyDraw& draw) { return friedman(ratings_of(draw, 0.0), draw.rng); }},
       {size, "rating", "any pair, after Holm", By::people,
        [](const StudyDraw& draw) { return any_pair(ratings_of(draw, 0.0)); }},
       {size, "rating", "declared the highest, equal to one", By::people, declared_highest},

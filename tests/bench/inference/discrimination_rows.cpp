@@ -77,6 +77,15 @@ Row against_chance(const char* task, const char* words, const Discrimination& of
           }};
 }
 
+// One guesser's right answers, by the places of 2 N repetitions of 4 trials.
+std::optional<Outcome> one_guesser(const StudyDraw& draw) {
+  analysis::BlockDesign design;
+  design.guess_rate = 0.5;
+  StudyDraw of_one{1, draw.rng, draw.guesser};
+  const auto answers = answers_of({2, 2, 2 * draw.people, false}, of_one);
+  return accuracy_against(analysis::places_redrawn(design, answers).value(), draw.rng());
+}
+
 // One person's d' = 1.5 by hits and false alarms of 10 N trials each, by independent observations.
 std::optional<Outcome> sensitivity_by_rates(const StudyDraw& draw) {
   constexpr double d_prime = 1.5;
@@ -98,6 +107,7 @@ std::vector<Row> rows_of_discrimination() {
       against_chance(two, "4 repetitions of 4 trials", {2, 2, 4, false}),
       against_chance(two, "the same, exclusions, some stop", {2, 2, 4, true}),
       against_chance("odd_one_out", "4 repetitions of 3 trials", {3, 1, 4, false}),
+      {Kind::size, two, "one participant's right answers, 8 N trials", By::guessers, one_guesser},
       {Kind::coverage, two, "one participant's share (Wilson), 10 N trials", By::people,
        share_of_one},
       {Kind::coverage, "same_different", "one participant's d' by rates, 10 N trials of each kind",

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "analysis/report/confusion/confusion_sections.hpp"
+#include "analysis/statistics/contingency/agreement.hpp"
 #include "analysis/statistics/contingency/information_transfer.hpp"
 #include "inference/people.hpp"
 #include "inference/rows.hpp"
@@ -52,17 +53,21 @@ BlockDesign design_of(bool is_constrained) {
   return design;
 }
 
+enum class Attendance { all, some_stop };  // a third half way
+
 // Right with the share, else a guess among all.
 IdentificationData answers_of(const BlockDesign& design, const StudyDraw& draw,
-                              const std::function<double()>& share_of_person) {
+                              const std::function<double()>& share_of_person,
+                              Attendance attendance = Attendance::all) {
   std::vector<results::AnswerRow> answers;
   for (int person = 0; person < draw.people; ++person) {
     const double share = share_of_person();
+    const bool stops = attendance == Attendance::some_stop && draw.rng.below(3) == 0;
     std::optional<std::size_t> last;
     const auto order = design.redraw ? constrained_order(draw.rng) : std::vector<int>{};
     const auto free_order = shuffled(stimuli, trials_of_each, draw.rng);
     std::vector<int> presented(stimuli, 0);
-    for (std::size_t i = 0; i < free_order.size(); ++i) {
+    for (std::size_t i = 0; i < free_order.size() / (stops ? 2 : 1); ++i) {
       const std::size_t stimulus =
           order.empty() ? free_order[i] : static_cast<std::size_t>(order[i]);
       last = draw.rng.uniform() < share ? stimulus : guess(draw.guesser, stimuli, last, draw.rng);
@@ -83,10 +88,12 @@ IdentificationData answers_of(const BlockDesign& design, const StudyDraw& draw,
 using Test = std::function<std::optional<Outcome>(const BlockDesign&, const IdentificationData&,
                                                   core::Rng&)>;
 
-Row of_guessers(const std::string& words, bool is_constrained, By by, const Test& test) {
+Row of_guessers(const std::string& words, bool is_constrained, By by, const Test& test,
+                Attendance attendance = Attendance::all) {
   const auto design = std::make_shared<const BlockDesign>(design_of(is_constrained));
-  return {Kind::size, "identification", words, by, [design, test](const StudyDraw& draw) {
-            const auto data = answers_of(*design, draw, [] { return 0.0; });
+  return {Kind::size, "identification", words, by, [=](const StudyDraw& draw) {
+            const auto data = answers_of(
+                *design, draw, [] { return 0.0; }, attendance);
             return test(*design, data, draw.rng);
           }};
 }
@@ -99,6 +106,12 @@ std::optional<Outcome> accuracy(const BlockDesign& design, const IdentificationD
 std::optional<Outcome> information(const BlockDesign& design, const IdentificationData& data,
                                    core::Rng& rng) {
   return Outcome{guessed_information(*randomisation_of(design, data).tables, 199, rng(), 1).p};
+}
+
+std::optional<Outcome> dependence(const BlockDesign& design, const IdentificationData& data,
+                                  core::Rng& rng) {
+  const auto tables = randomisation_of(design, data).tables;
+  return Outcome{monte_carlo_independence(*tables, 199, rng(), 1).p};
 }
 
 std::optional<Outcome> contrast(const BlockDesign& /*design*/, const IdentificationData& data,
@@ -142,8 +155,13 @@ std::vector<Row> rows_of_identification() {
   return {
       of_guessers("right answers against chance", false, By::guessers, accuracy),
       of_guessers("the same, no stimulus three times running", true, By::guessers, accuracy),
+      of_guessers("the same, some stop half way", false, By::guessers, accuracy,
+                  Attendance::some_stop),
+      of_guessers("answers depend on stimuli", false, By::guessers, dependence),
       of_guessers("information against guesses", false, By::guessers, information),
       of_guessers("contrast of a factor", false, By::guessers, contrast),
+      of_guessers("the same, some stop half way", false, By::guessers, contrast,
+                  Attendance::some_stop),
       of_guessers("learning", false, By::guessers, learning),
       of_guessers("effect of the trial before", false, By::people, previous_trial),
       {Kind::coverage, "identification", "information, participants' shares right differ",

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "analysis/statistics/detection/rates.hpp"
 #include "analysis/statistics/population/independent_groups.hpp"
 #include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/population/planned_contrasts.hpp"
+#include "analysis/statistics/population/test_retest.hpp"
 #include "analysis/statistics/scaling/power_law.hpp"
 #include "core/error.hpp"
 #include "inference/people.hpp"
@@ -31,6 +33,24 @@ Row coverage_of_share(double mean, Trials trials, const char* words) {
           By::correlations, [mean, trials](const StudyDraw& draw) {
             const auto of = analysis::mean_share(sample_of(mean, trials, draw));
             return of->interval ? std::optional{holds(*of->interval, mean)} : std::nullopt;
+          }};
+}
+
+// Where participants' shares are equal t gives no interval.
+Row width_of_share(double mean, Trials trials, const char* words) {
+  return {Kind::width, "tasks with right answers", fmt::format("mean share {}, {}", mean, words),
+          By::correlations, [mean, trials](const StudyDraw& draw) -> std::optional<Outcome> {
+            const auto people = sample_of(mean, trials, draw);
+            std::vector<double> shares;
+            std::ranges::transform(people, std::back_inserter(shares),
+                                   &analysis::Proportion::value);
+            const auto of = analysis::mean_share(people);
+            const analysis::Interval t = analysis::t_interval(shares);
+            if (!of->interval || t.low == t.high) {
+              return std::nullopt;
+            }
+            return Outcome{of->interval->high - of->interval->low,
+                           std::min(t.high, 1.0) - std::max(t.low, 0.0)};
           }};
 }
 
@@ -208,6 +228,30 @@ std::optional<Outcome> mean_sensitivity(const StudyDraw& draw) {
   return holds(analysis::t_interval(found), 1.5);
 }
 
+// Values of two days: people differ by 1, days by .3, and .7 is left.
+std::vector<std::vector<double>> days_of(const StudyDraw& draw) {
+  std::vector<std::vector<double>> days(2);
+  for (const double own : normal_values(draw.people, 0.0, 1.0, draw.rng)) {
+    days[0].push_back(own + 0.7 * draw.rng.normal());
+    days[1].push_back(own + 0.3 + 0.7 * draw.rng.normal());
+  }
+  return days;
+}
+
+std::optional<Outcome> upper_limit(const StudyDraw& draw) {
+  const auto days = days_of(draw);
+  const auto interval = analysis::limits_of_agreement(days[0], days[1]).high_interval;
+  return interval ? std::optional{holds(*interval, 0.3 + 1.96 * 0.7 * std::sqrt(2.0))}
+                  : std::nullopt;
+}
+
+// In absolute terms the shift counts as variance between days: .3 squared / 2.
+std::optional<Outcome> agreement_of_days(const StudyDraw& draw) {
+  const auto found = analysis::intraclass_correlation(days_of(draw));
+  const double truth = 1.0 / (1.0 + 0.5 * 0.09 + 0.49);
+  return found ? std::optional{holds(found->interval, truth)} : std::nullopt;
+}
+
 std::vector<Row> rows_of_personal_values() {
   using enum Kind;
   return {
@@ -237,6 +281,8 @@ std::vector<Row> rows_of_personal_values() {
          return std::optional{Outcome{analysis::sign_flip_test(values, 1).p}};
        }},
       {coverage, "identification", "mean d' of a class", By::people, mean_sensitivity},
+      {coverage, "retest", "limit of agreement of two days", By::people, upper_limit},
+      {coverage, "retest", "intra-class correlation of two days", By::people, agreement_of_days},
   };
 }
 }  // namespace
@@ -248,6 +294,10 @@ std::vector<Row> rows_of_shares() {
     rows.push_back(coverage_of_share(mean, Trials::some_stop, "30 trials, some stop at 6"));
     rows.push_back(coverage_of_share(mean, Trials::those_below_stop,
                                      "30 trials, those below the mean stop at 6"));
+  }
+  for (const double mean : {0.5, 0.8}) {
+    rows.push_back(width_of_share(mean, Trials::equal, "16 trials"));
+    rows.push_back(width_of_share(mean, Trials::some_stop, "30 trials, some stop at 6"));
   }
   return rows;
 }

@@ -15,7 +15,8 @@ namespace tapstudy::bench {
 enum class Guesser { indifferent, of_habit, reluctant_to_repeat };
 
 // The p value of a test, with the probability of what is strictly further than what was observed
-// where the test gives it; or 1 for an interval that holds the truth, 0 for one that does not.
+// where the test gives it; or 1 for an interval that holds the truth, 0 for one that does not; or
+// the length of an interval, with that of t's.
 struct Outcome {
   double value{};
   double of_further{std::numeric_limits<double>::quiet_NaN()};
@@ -31,7 +32,7 @@ struct StudyDraw {
   double intraclass_correlation{};  // of people's shares
 };
 
-enum class Kind { size, coverage };
+enum class Kind { size, coverage, width };
 // What the three numbers in a cell are of: kinds of guessers, correlations of 0, .1 and .3; or one.
 enum class By { guessers, correlations, people };
 enum class Cost { little, much };  // so many studies, or so many tracks

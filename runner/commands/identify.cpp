@@ -92,12 +92,15 @@ bool are_responses(const IdentifyOptions& options) {
 ResponseQuestion response_question_of(const IdentifyOptions& options) {
   const TapQuestion& asked = options.question;
   if (!asked.columns.empty() || !asked.force_column.empty() || !asked.speeds.empty() ||
-      !asked.places.empty() || !options.at.empty() || asked.reading.rate_hz > 0.0) {
+      !options.at.empty() || asked.reading.rate_hz > 0.0) {
     throw core::InvalidInput{
-        "--column, --force-column, --speeds, --places, --at and --rate are for recordings of taps, "
-        "not for frequency responses"};
+        "--column, --force-column, --speeds, --at and --rate are for recordings of taps, not for "
+        "frequency responses"};
   }
-  ResponseQuestion question{asked.recordings, {}, {}, asked.protocol, asked.stimulus};
+  if (!asked.places.empty() && asked.protocol.empty()) {
+    throw core::InvalidInput{"--places needs --protocol with --stimulus, whose model has shapes"};
+  }
+  ResponseQuestion question{asked.recordings, {}, {}, asked.places, asked.protocol, asked.stimulus};
   if (!options.response.empty()) {
     question.kind = analysis::response_kind_from(options.response);
   }
@@ -235,8 +238,8 @@ void add_identify(CommandParser& line) {
                  "CSV with a column speed_m_s: the speed of each impact, in order");
   command.option(
       "--places", question.places,
-      "CSV with columns x_m and y_m: where each impact tapped the plate, in order; modes "
-      "are then matched by their shapes, too");
+      "CSV with columns x_m and y_m: where each impact tapped the plate, in order, or with place, "
+      "x_m and y_m: where each response was measured; modes are then matched by their shapes, too");
   command.option("--at", options->at,
                  "X,Y of the place tapped, m: writes recordings.yaml for technique recorded");
   command.flag("--all", options->wants_all,

@@ -355,6 +355,80 @@ TEST_CASE("modes whose shapes are known by the places tapped are matched by them
   CHECK(ratios[2] == Approx(0.008).epsilon(0.05));  // second
 }
 
+namespace {
+// Receptances of all places by a force at the first, which rings as roving_taps does; the third
+// sensor is mounted upside down, and the first has a second axis.
+std::string measured_responses(const PlacesOfShelf& places,
+                               const std::vector<double>& frequencies_hz,
+                               const std::vector<Eigen::Index>& shape_of) {
+  std::string text = "frequency_hz,9+X/1+Z real,9+X/1+Z imag";
+  for (std::size_t place = 0; place < places.at_m.size(); ++place) {
+    text += fmt::format(",{0}{1}Z/1+Z real,{0}{1}Z/1+Z imag", place + 1, place == 2 ? '-' : '+');
+  }
+  for (int line = 40; line <= 1200; ++line) {
+    const double hz = 0.25 * line;
+    text += fmt::format("\n{:g}", hz);
+    std::vector<std::complex<double>> row(places.at_m.size() + 1);
+    for (std::size_t mode = 0; mode < frequencies_hz.size(); ++mode) {
+      const double own_hz = frequencies_hz[mode];
+      const std::complex<double> motion =
+          1.0 / std::complex{own_hz * own_hz - hz * hz, 2.0 * ratio_of_rung(mode) * own_hz * hz};
+      const auto shape = places.shapes.col(shape_of[mode]);
+      row[0] += 0.3 * shape[0] * shape[0] * motion;
+      for (std::size_t place = 0; place < places.at_m.size(); ++place) {
+        row[place + 1] +=
+            (place == 2 ? -1.0 : 1.0) * shape[static_cast<Eigen::Index>(place)] * shape[0] * motion;
+      }
+    }
+    for (const std::complex<double>& value : row) {
+      text += fmt::format(",{:.8g},{:.8g}", value.real(), value.imag());
+    }
+  }
+  return text + "\n";
+}
+}  // namespace
+
+TEST_CASE("modes of frequency responses are matched by the shapes at places that are stated",
+          "[end_to_end][identify]") {
+  Case measured;
+  testing::write(measured.protocol,
+                 testing::replaced(testing::replaced(shelf, "0.4, 0.25, 0.012", "0.4, 0.12, 0.012"),
+                                   "P1: [0.1, 0.05]", "P1: [0.1, 0.03]"));
+  const PlacesOfShelf places = places_of(measured.protocol);
+  const std::vector<double> hz(places.frequencies_hz.begin(), places.frequencies_hz.begin() + 3);
+  const std::vector<Eigen::Index> shape_of{0, 2, 1};  // as where the model is a little wrong
+  measured.recording = measured.directory / "responses.csv";
+  testing::write(measured.recording, measured_responses(places, hz, shape_of));
+  std::string table = "place,x_m,y_m\n";
+  for (std::size_t i = 0; i < places.at_m.size(); ++i) {
+    table += fmt::format("{},{:.9g},{:.9g}\n", i + 1, places.at_m[i].x(), places.at_m[i].y());
+  }
+  const std::string stated = measured.directory / "places.csv";
+  std::vector<std::string> asked{"--response", "receptance", "--places", stated};
+  testing::write(stated, table);
+  CHECK_THAT(measured.identify(asked).standard_error, Contains("--places needs --protocol"));
+  asked.insert(asked.end(), {"--protocol", measured.protocol, "--stimulus", "shelf"});
+  testing::write(stated, table + "17,0,0\n");
+  CHECK_THAT(measured.identify(asked).standard_error, Contains("no response is of the place '17'"));
+  testing::write(stated, table);
+  const auto run = measured.identify(asked);
+  INFO(run.standard_output << run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  CHECK_THAT(run.standard_output, Contains("shapes are compared at 6 of 7 places"));
+  const Json model = measured.json()["model"];
+  REQUIRE(model["matched"].size() == hz.size());
+  for (const Json& one : model["matched"]) {
+    CAPTURE(one.dump(), model["mac"].dump());
+    const auto mode = one["agreed_mode"].get<std::size_t>();
+    CHECK(one["model_mode"] == shape_of.at(mode));
+    CHECK(one["mac"].get<double>() > 0.999);
+    CHECK(one["mac"] == model["mac"][mode][static_cast<std::size_t>(shape_of.at(mode))]);
+  }
+  const std::string rows = testing::contents(measured.out + "/mac.csv");
+  CHECK(std::ranges::count(rows, '\n') == 1 + 3 * std::ssize(places.frequencies_hz));
+  CHECK_THAT(testing::contents(measured.out + "/mac.svg"), Contains("<svg"));
+}
+
 TEST_CASE("Young's modulus, damping and modes of a shelf are found in recordings of its taps",
           "[identify][end_to_end][slow]") {
   Case shelf_taps;

@@ -82,6 +82,26 @@ void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes) {
   }
 }
 
+void judge_single_decay(std::vector<RepeatedMode>& modes) {
+  constexpr double weak = 0.1;
+  constexpr double beside = 1.5;
+  const std::vector<RepeatedMode> before = modes;
+  for (RepeatedMode& mode : modes) {
+    const auto stronger = std::ranges::find_if(before, [&](const RepeatedMode& other) {
+      return is_listed(other) && mode.amplitude < weak * other.amplitude &&
+             std::max(hz(mode), hz(other)) < beside * std::min(hz(mode), hz(other));
+    });
+    const bool is_pulse = 2.0 * std::numbers::pi * mode.damping_ratio.value > 1.0;
+    if (!is_listed(mode) || (stronger == before.end() && !is_pulse)) {
+      continue;
+    }
+    mode.standing = Standing::doubtful;
+    mode.why = is_pulse ? "dies away within a period, in a single decay"
+                        : fmt::format("weak beside the mode at {:.5g} Hz, in a single decay",
+                                      hz(*stronger));
+  }
+}
+
 namespace {
 constexpr double around = 1.5;
 constexpr double as_strong = 0.5;
@@ -130,23 +150,28 @@ constexpr double combination_weakness = 0.3;     // about 10 dB
 constexpr double least_of_other_sideband = 0.1;  // of the sideband's amplitude
 constexpr int highest_multiple = 3;
 
+constexpr double widest_tolerance = 0.01;  // of the frequency
+
 struct Line {
   double frequency_hz{};
   double decay_per_s{};
+  double error_hz{};  // half of the interval
 };
 
 Line line_of(const RepeatedMode& mode) {
-  return {hz(mode), 2.0 * std::numbers::pi * hz(mode) * mode.damping_ratio.value};
+  return {hz(mode), 2.0 * std::numbers::pi * hz(mode) * mode.damping_ratio.value,
+          width(mode.frequency_hz.interval) / 2.0};
 }
 
-bool is_at(double frequency_hz, const RepeatedMode& mode) {
-  return std::abs(frequency_hz - hz(mode)) <=
-         std::max(combination_tolerance * hz(mode), width(mode.frequency_hz.interval) / 2.0);
+bool is_at(const Line& made, const RepeatedMode& mode) {
+  const double errors_hz = made.error_hz + width(mode.frequency_hz.interval) / 2.0;
+  return std::abs(made.frequency_hz - hz(mode)) <=
+         std::clamp(errors_hz, combination_tolerance * hz(mode), widest_tolerance * hz(mode));
 }
 
 bool is_made_as(const Line& made, const RepeatedMode& mode) {
   const double decay_per_s = line_of(mode).decay_per_s;
-  return is_at(made.frequency_hz, mode) &&
+  return is_at(made, mode) &&
          std::abs(decay_per_s - made.decay_per_s) <= rate_tolerance * made.decay_per_s;
 }
 
@@ -159,7 +184,7 @@ bool outlasts(const RepeatedMode& mode, const RepeatedMode& factor) {
 // "2 times 45.9 Hz", or empty.
 std::string multiple_of(const RepeatedMode& mode, const Line& line) {
   for (int n = 2; n <= highest_multiple; ++n) {
-    if (is_made_as({n * line.frequency_hz, n * line.decay_per_s}, mode)) {
+    if (is_made_as({n * line.frequency_hz, n * line.decay_per_s, n * line.error_hz}, mode)) {
       return fmt::format("{} times {:.5g} Hz", n, line.frequency_hz);
     }
   }
@@ -170,9 +195,9 @@ std::string multiple_of(const RepeatedMode& mode, const Line& line) {
 // mode that happens to lie there.
 bool has_other_sideband(const RepeatedMode& mode, const Line& carrier,
                         const std::vector<RepeatedMode>& modes) {
-  const double mirrored_hz = 2.0 * carrier.frequency_hz - hz(mode);
+  const Line mirrored{2.0 * carrier.frequency_hz - hz(mode), 0.0, 2.0 * carrier.error_hz};
   return std::ranges::any_of(modes, [&](const RepeatedMode& other) {
-    return other.standing != Standing::line && is_at(mirrored_hz, other) &&
+    return other.standing != Standing::line && is_at(mirrored, other) &&
            other.amplitude >= least_of_other_sideband * mode.amplitude;
   });
 }
@@ -182,8 +207,8 @@ std::string sum_of(const RepeatedMode& mode, const Line& a, const Line& b) {
   for (int n = 1; n <= highest_multiple; ++n) {
     const std::string times = n > 1 ? fmt::format("{} times ", n) : "";
     for (const double sign : {-1.0, 1.0}) {
-      const Line made{a.frequency_hz + sign * n * b.frequency_hz,
-                      a.decay_per_s + n * b.decay_per_s};
+      const Line made{a.frequency_hz + sign * n * b.frequency_hz, a.decay_per_s + n * b.decay_per_s,
+                      a.error_hz + n * b.error_hz};
       if (made.frequency_hz > 0.0 && is_made_as(made, mode)) {
         return fmt::format("{:.5g} Hz {} {}{:.5g} Hz", a.frequency_hz, sign < 0.0 ? "-" : "+",
                            times, b.frequency_hz);
@@ -206,7 +231,7 @@ std::string made_of(const RepeatedMode& mode, const RepeatedMode& one, const Rep
 }
 
 std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedMode>& modes,
-                           int derivatives) {
+                           int derivatives, const std::function<bool(std::size_t)>& moves_as) {
   const auto is_stronger = [&](const RepeatedMode& other) {
     return is_listed(other) && mode.amplitude < combination_weakness * other.amplitude;
   };
@@ -215,9 +240,11 @@ std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedM
     return is_listed(other) &&
            mode.amplitude < combination_weakness * as_displacement * other.amplitude;
   };
-  for (const RepeatedMode& one : modes) {
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const RepeatedMode& one = modes[i];
     for (const RepeatedMode& other : modes) {
-      const bool is_strong = is_stronger(other) || (&one != &other && modulates(other));
+      const bool is_strong =
+          &one == &other || ((is_stronger(other) || modulates(other)) && moves_as(i));
       if (is_stronger(one) && is_strong) {
         if (std::string made = made_of(mode, one, other, modes); !made.empty()) {
           return made;
@@ -229,11 +256,16 @@ std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedM
 }
 }  // namespace
 
-void mark_combinations(std::vector<RepeatedMode>& modes, int derivatives) {
+void mark_combinations(std::vector<RepeatedMode>& modes, int derivatives,
+                       const Likeness& likeness) {
   const std::vector<RepeatedMode> before = modes;
-  for (RepeatedMode& mode : modes) {
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    RepeatedMode& mode = modes[i];
+    const auto moves_as = [&](std::size_t carrier) {
+      return !likeness || likeness(i, carrier) >= like_carrier;
+    };
     const std::string made =
-        is_listed(mode) ? combination_of(mode, before, derivatives) : std::string{};
+        is_listed(mode) ? combination_of(mode, before, derivatives, moves_as) : std::string{};
     if (!made.empty()) {
       mode.standing = Standing::combination;
       mode.why = made;

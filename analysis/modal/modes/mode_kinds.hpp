@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,11 @@ inline constexpr double least_share_of_taps = 1.0 / 3.0;
 // background (unless it is a line), and so does what grows below the weakest mode's frequency.
 void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes);
 
+// Of a single decay, one sensor's of one impact, nothing tells a mode from what another one's large
+// motion adds around it: agreed ones become doubtful that are 20 dB weaker than another within a
+// factor of 1.5 of their frequency, and those that fall by more than e in one period.
+void judge_single_decay(std::vector<RepeatedMode>& modes);
+
 // The amplitude of one tone with the power that a sensor shows at rest around a frequency (from two
 // thirds to one and a half of it); 0 where too short to tell.
 double amplitude_at(double frequency_hz, const FreeDecay& rest);
@@ -28,15 +34,21 @@ double amplitude_at(double frequency_hz, const FreeDecay& rest);
 // but background.
 void mark_background(const std::vector<FreeDecay>& rests, std::vector<RepeatedMode>& modes);
 
+// The modal assurance of the shapes of two modes, by their indices.
+using Likeness = std::function<double(std::size_t, std::size_t)>;
+
 // Modes that are made by stronger ones: where the motion's products reach the sensor (a joint, a
 // contact, an overdriven amplifier), the products of two decaying motions decay by the sum of their
 // rates. What lies at a multiple n f of one stronger mode, or at f ± n g of two, decays at that
-// rate, both within the intervals or combination_tolerance, and is weaker by
+// rate, both within the intervals of all of them or combination_tolerance, and is weaker by
 // combination_weakness, is a combination, unless it rings longer than what would make it or the
 // other sideband, f ∓ n g, is not seen. A slow motion g that modulates a fast one need only be
-// stronger as a displacement, of which `derivatives` were measured (2: acceleration). Modes in
+// stronger as a displacement, of which `derivatives` were measured (2: acceleration); the sidebands
+// move as the fast one does, where shapes are known (likeness at least like_carrier). Modes in
 // ascending frequency.
-void mark_combinations(std::vector<RepeatedMode>& modes, int derivatives = 0);
+inline constexpr double like_carrier = 0.5;
+void mark_combinations(std::vector<RepeatedMode>& modes, int derivatives = 0,
+                       const Likeness& likeness = {});
 
 // What is not listed among the modes, one sentence a kind: "11 components below 40 Hz: hum or
 // handling".

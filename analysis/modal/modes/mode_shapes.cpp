@@ -8,10 +8,9 @@
 
 #include "core/algebra/lapack.hpp"
 namespace tapstudy::analysis {
-double modal_assurance(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b) {
   const double norms = a.squaredNorm() * b.squaredNorm();
-  const double product = a.dot(b);
-  return norms > 0.0 ? product * product / norms : 0.0;
+  return norms > 0.0 ? std::norm(a.dot(b)) / norms : 0.0;
 }
 
 namespace {

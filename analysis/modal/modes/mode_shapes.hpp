@@ -4,9 +4,9 @@
 
 #include "analysis/modal/decay/free_decay.hpp"
 namespace tapstudy::analysis {
-// The modal assurance criterion of two shapes at the same places (Allemang & Brown 1982): (a.b)^2 /
-// (a.a b.b), 1 for shapes in proportion, 0 for orthogonal ones or none.
-double modal_assurance(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+// The modal assurance criterion of two shapes at the same places (Allemang & Brown 1982): |a* b|^2
+// / (a* a b* b), 1 for shapes in proportion, 0 for orthogonal ones or none.
+double modal_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b);
 
 // One tap as one sensor saw it, which stays where it is while the place tapped changes.
 struct PlacedTap {

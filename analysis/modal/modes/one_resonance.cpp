@@ -6,11 +6,14 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "analysis/modal/decay/decay_band.hpp"
 #include "analysis/modal/decay/decay_model.hpp"
 #include "analysis/modal/modes/distinct_modes.hpp"
+#include "analysis/modal/modes/mode_shapes.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -112,10 +115,8 @@ PairAmplitudes amplitudes(const RepeatedMode& a, const RepeatedMode& b,
           Eigen::Map<Eigen::VectorXcd>{of_b.data(), std::ssize(of_b)}};
 }
 
-// The modal assurance of complex shapes.
 double assurance(const PairAmplitudes& pair) {
-  const double size = pair.one.squaredNorm() * pair.other.squaredNorm();
-  return size > 0.0 ? std::norm(pair.one.dot(pair.other)) / size : 0.0;
+  return modal_assurance(pair.one, pair.other);
 }
 
 std::complex<double> median_ratio(const PairAmplitudes& pair) {
@@ -184,25 +185,37 @@ bool may_be_one(const RepeatedMode& a, const RepeatedMode& b) {
          (a.standing == Standing::agreed || b.standing == Standing::agreed);
 }
 
-void join_if_one(const std::vector<FreeDecay>& decays, const std::vector<RepeatedMode>& modes,
-                 RepeatedMode& a, RepeatedMode& b) {
-  const PairAmplitudes pair = without_exceptions(amplitudes(a, b, decays, modes));
+// Which mode each is a part of: itself, unless it was joined.
+using Wholes = std::vector<std::size_t>;
+
+void join_if_one(const std::vector<FreeDecay>& decays, std::size_t i, std::size_t k,
+                 std::vector<RepeatedMode>& modes, Wholes& wholes) {
+  const PairAmplitudes pair = without_exceptions(amplitudes(modes[i], modes[k], decays, modes));
   if (assurance(pair) < one_shape) {
     return;
   }
-  if (has_more_energy(pair, a, b)) {
-    join(a, b);
-  } else {
-    join(b, a);
+  const auto [kept, part] =
+      has_more_energy(pair, modes[i], modes[k]) ? std::pair{i, k} : std::pair{k, i};
+  const std::size_t whole = wholes[kept];  // a part of another mode does not become one again
+  if (wholes[part] == part && whole != part) {
+    wholes[part] = whole;
+    join(modes[whole], modes[part]);
   }
 }
 }  // namespace
 
+double likeness_over(const std::vector<FreeDecay>& decays, const std::vector<RepeatedMode>& modes,
+                     std::size_t one, std::size_t other) {
+  return assurance(amplitudes(modes[one], modes[other], decays, modes));
+}
+
 void join_resonances(const std::vector<FreeDecay>& decays, std::vector<RepeatedMode>& modes) {
+  Wholes wholes(modes.size());
+  std::iota(wholes.begin(), wholes.end(), std::size_t{0});
   for (std::size_t i = 0; i < modes.size(); ++i) {
     for (std::size_t k = i + 1; k < modes.size(); ++k) {
       if (may_be_one(modes[i], modes[k])) {
-        join_if_one(decays, modes, modes[i], modes[k]);
+        join_if_one(decays, i, k, modes, wholes);
       }
     }
   }

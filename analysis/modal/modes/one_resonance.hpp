@@ -19,5 +19,9 @@ namespace tapstudy::analysis {
 inline constexpr double series_ratio = 1.6;
 // Of amplitudes a and a^3 over strengths from 0.4 to 1, which are one mode's, it is 0.88.
 inline constexpr double one_shape = 0.8;
+// The modal assurance of two components' amplitudes over all decays.
+double likeness_over(const std::vector<FreeDecay>& decays, const std::vector<RepeatedMode>& modes,
+                     std::size_t one, std::size_t other);
+
 void join_resonances(const std::vector<FreeDecay>& decays, std::vector<RepeatedMode>& modes);
 }  // namespace tapstudy::analysis

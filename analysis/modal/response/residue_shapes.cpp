@@ -12,11 +12,6 @@ namespace {
 using Complex = std::complex<double>;
 }
 
-double complex_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b) {
-  const double norms = a.squaredNorm() * b.squaredNorm();
-  return norms > 0.0 ? std::norm(a.dot(b)) / norms : 0.0;
-}
-
 Eigen::VectorXcd shape_of(const Eigen::VectorXcd& residues, const ResponseGrid& grid) {
   const auto outputs = std::ssize(grid.columns);
   const auto inputs = std::ssize(grid.columns.front());

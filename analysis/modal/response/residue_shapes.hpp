@@ -3,9 +3,6 @@
 
 #include "analysis/modal/response/response_modes.hpp"
 namespace tapstudy::analysis {
-// |a* b|^2 / (a* a b* b), 1 for vectors in proportion.
-double complex_assurance(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b);
-
 // The shape of a mode: the vector that with one of the inputs explains most of its residues, which
 // are the product of the displacements of the two places. As ResponseMode::shape.
 Eigen::VectorXcd shape_of(const Eigen::VectorXcd& residues, const ResponseGrid& grid);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 
+#include "analysis/modal/modes/mode_shapes.hpp"
 #include "analysis/modal/response/residue_shapes.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -216,7 +217,7 @@ bool is_remainder(const ResponseMode& mode, const ResponseMode& stronger) {
   return std::abs(mode.frequency_hz.value - stronger.frequency_hz.value) <
              bandwidth_of(mode) + bandwidth_of(stronger) &&
          mode.share < small_share * stronger.share &&
-         complex_assurance(mode.residues, stronger.residues) > same_shape;
+         modal_assurance(mode.residues, stronger.residues) > same_shape;
 }
 
 // Between the two lines around a frequency.

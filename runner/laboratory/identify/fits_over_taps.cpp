@@ -185,13 +185,13 @@ std::vector<std::string> remarks_on_resolution(const std::vector<IdentifiedTap>&
 }
 
 std::vector<std::string> remarks_on_shapes(const analysis::ModelUpdate& update,
-                                           const TapIdentification& identified) {
+                                           const ModalFindings& identified) {
   std::vector<std::string> remarks;
   for (const analysis::MatchedMode& one : update.matched) {
     if (one.assurance && *one.assurance < min_assurance) {
       remarks.push_back(fmt::format(
           "the mode at {:.6g} Hz does not have the shape of the model's (MAC {:.2g}): are places, "
-          "force or speeds right?",
+          "directions and impulses right?",
           identified.modes[identified.agreed[one.measured]].frequency_hz.value, *one.assurance));
     }
   }

@@ -26,5 +26,5 @@ std::vector<std::string> remarks_on_scatter(const std::vector<analysis::Repeated
 std::vector<std::string> remarks_on_resolution(const std::vector<IdentifiedTap>& taps);
 // Modes that were matched to the model's by frequency but have another shape.
 std::vector<std::string> remarks_on_shapes(const analysis::ModelUpdate& update,
-                                           const TapIdentification& identified);
+                                           const ModalFindings& identified);
 }  // namespace tapstudy::runner

@@ -16,9 +16,9 @@ namespace {
 constexpr double max_speed_m_s = 100.0;
 constexpr double max_distance_m = 10.0;
 
-class ImpactTable {
+class MeasurementTable {
  public:
-  explicit ImpactTable(const std::string& file) : file_{file} {
+  explicit MeasurementTable(const std::string& file) : file_{file} {
     std::ifstream text{file};
     if (!text) {
       throw core::InvalidInput{file + ": cannot be read"};
@@ -44,6 +44,16 @@ class ImpactTable {
     return values;
   }
 
+  std::vector<std::string> texts(const std::string& name) const {
+    const std::size_t place = place_of(name);
+    std::vector<std::string> texts;
+    for (std::size_t i = 1; i < text_.rows.size(); ++i) {
+      const auto& cells = text_.rows[i].cells;
+      texts.push_back(place < cells.size() ? core::trimmed(cells[place]) : std::string{});
+    }
+    return texts;
+  }
+
  private:
   std::size_t place_of(const std::string& name) const {
     if (!text_.rows.empty()) {
@@ -62,13 +72,13 @@ class ImpactTable {
 }  // namespace
 
 std::vector<double> read_speeds(const std::string& file) {
-  return ImpactTable{file}.column(
+  return MeasurementTable{file}.column(
       "speed_m_s", [](double value) { return value > 0.0 && value < max_speed_m_s; },
       fmt::format("a speed (above 0, below {} m/s)", max_speed_m_s));
 }
 
-std::vector<Eigen::Vector2d> read_places(const std::string& file) {
-  const ImpactTable table{file};
+namespace {
+std::vector<Eigen::Vector2d> coordinates_of(const MeasurementTable& table) {
   const auto is_near = [](double value) { return std::abs(value) <= max_distance_m; };
   const std::string what = fmt::format("a coordinate (within {} m)", max_distance_m);
   const std::vector<double> x_m = table.column("x_m", is_near, what);
@@ -78,6 +88,25 @@ std::vector<Eigen::Vector2d> read_places(const std::string& file) {
     places_m.emplace_back(x_m[i], y_m[i]);
   }
   return places_m;
+}
+}  // namespace
+
+std::vector<Eigen::Vector2d> read_places(const std::string& file) {
+  return coordinates_of(MeasurementTable{file});
+}
+
+std::vector<NamedPlace> read_named_places(const std::string& file) {
+  const MeasurementTable table{file};
+  const std::vector<std::string> names = table.texts("place");
+  const std::vector<Eigen::Vector2d> places_m = coordinates_of(table);
+  std::vector<NamedPlace> places;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::ranges::find(places, names[i], &NamedPlace::name) != places.end()) {
+      throw core::InvalidInput{fmt::format("{}: the place '{}' is there twice", file, names[i])};
+    }
+    places.push_back({names[i], places_m[i]});
+  }
+  return places;
 }
 
 namespace {

@@ -14,6 +14,14 @@ std::vector<double> read_speeds(const std::string& file);
 // The columns x_m and y_m, plate frame: within 10 m.
 std::vector<Eigen::Vector2d> read_places(const std::string& file);
 
+// A row for each place where motion was measured: the columns place, x_m and y_m. Throws
+// InvalidInput likewise, and for a place that is there twice.
+struct NamedPlace {
+  std::string name;  // "12+Z", or the node alone
+  Eigen::Vector2d at_m;
+};
+std::vector<NamedPlace> read_named_places(const std::string& file);
+
 // One recording: channels that were measured at the same times.
 struct MeasuredFile {
   std::vector<analysis::Recording> channels;

@@ -137,7 +137,14 @@ Json json_of(const ModelComparison& model) {
             {"matched", Json::array()},
             {"unmatched", Json::array()},
             {"rival_pa", nullptr},
-            {"spring_factor", nullptr}};
+            {"spring_factor", nullptr},
+            {"mac", nullptr}};
+  if (model.assurance.size() > 0) {
+    json["mac"] = Json::array();
+    for (const auto row : model.assurance.rowwise()) {
+      json["mac"].push_back(std::vector<double>(row.begin(), row.end()));
+    }
+  }
   if (!model.update) {
     return json;
   }

@@ -9,6 +9,7 @@
 
 #include "analysis/modal/decay/pole_estimation.hpp"
 #include "core/files/output_files.hpp"
+#include "runner/laboratory/identify/assurance_matrix.hpp"
 namespace tapstudy::runner {
 namespace {
 using analysis::Estimate;
@@ -79,7 +80,7 @@ void print_rayleigh(const analysis::RayleighFit& fit) {
   if (fit.p) {
     fmt::print("  chi-squared {:.3g} of {:g} degrees of freedom, p {:.2g}{}; ", fit.chi_squared,
                fit.degrees_of_freedom, *fit.p,
-               fit.p_is_of_f ? " (by F: the ratios' errors are of few taps)" : "");
+               fit.p_is_of_f ? " (by F: the ratios' errors are estimates, too)" : "");
   } else {
     fmt::print("  two modes cannot say whether it fits; ");
   }
@@ -316,6 +317,7 @@ void write_files(const std::string& directory, const TapIdentification& found) {
       return (std::filesystem::path{unfinished} / file).string();
     };
     core::write_new_file(in("identified.yaml"), [&](std::ostream& out) { out << yaml_of(found); });
+    write_assurance(found, unfinished);
     if (found.question.at_m) {
       core::write_new_file(in("recordings.yaml"),
                            [&](std::ostream& out) { out << playback_of(found, found.finger_kg); });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <optional>
 
 #include "analysis/modal/modes/mode_shapes.hpp"
@@ -106,7 +107,8 @@ Eigen::MatrixXd assurance_of(const MeasuredShapes& measured, const core::ModalMo
   Eigen::MatrixXd assurance(measured.shapes.cols(), model.frequency_hz.size());
   for (Eigen::Index i = 0; i < assurance.rows(); ++i) {
     for (Eigen::Index j = 0; j < assurance.cols(); ++j) {
-      assurance(i, j) = analysis::modal_assurance(measured.shapes.col(i), model_shapes.col(j));
+      assurance(i, j) = analysis::modal_assurance(measured.shapes.col(i),
+                                                  model_shapes.col(j).cast<std::complex<double>>());
     }
   }
   return assurance;
@@ -160,11 +162,10 @@ void update_on_springs(const core::PlateSpec& spec, const MeasuredModes& measure
     const double over_modulus = found->spring_factor.value * spec.material.youngs_modulus_pa /
                                 found->model.youngs_modulus_pa.value;
     const core::PlateSpec updated = on_springs(spec, over_modulus);
-    const Eigen::MatrixXd assurance =
-        assurance_if_known(measured, modes_of(updated, progress), updated);
+    model.assurance = assurance_if_known(measured, modes_of(updated, progress), updated);
     for (analysis::MatchedMode& one : model.update->matched) {
-      one.assurance =
-          assurance(static_cast<Eigen::Index>(one.measured), static_cast<Eigen::Index>(one.model));
+      one.assurance = model.assurance(static_cast<Eigen::Index>(one.measured),
+                                      static_cast<Eigen::Index>(one.model));
     }
   }
   model.frequencies_hz = found->model_hz;
@@ -200,9 +201,10 @@ ModelComparison compare_with_model(const protocols::Protocol& protocol, const st
     if (measured.frequencies_hz.empty() || model.frequencies_hz.empty()) {
       return;
     }
-    model.update = analysis::update_youngs_modulus(measured.frequencies_hz, model.frequencies_hz,
-                                                   spec.material.youngs_modulus_pa,
-                                                   assurance_if_known(measured, modal, spec));
+    model.assurance = assurance_if_known(measured, modal, spec);
+    model.update =
+        analysis::update_youngs_modulus(measured.frequencies_hz, model.frequencies_hz,
+                                        spec.material.youngs_modulus_pa, model.assurance);
     if (model.is_on_springs) {
       update_on_springs(spec, measured, progress, model);
       if (!model.springs) {  // f ~ sqrt(E) would take the springs to grow with E

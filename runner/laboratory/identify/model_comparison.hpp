@@ -11,12 +11,14 @@
 #include "core/model/shape/shape.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 namespace tapstudy::runner {
-// Shapes of measured modes at the places that were tapped.
+// Shapes of measured modes, along z, at the places that were tapped or that moved.
 struct MeasuredShapes {
-  std::vector<Eigen::Vector2d> places_m;  // plate frame, each once
-  Eigen::MatrixXd shapes;                 // at the places, a column for each measured mode
+  std::vector<Eigen::Vector2d> places_m;  // plate frame
+  Eigen::MatrixXcd shapes;                // at the places, a column for each measured mode
 };
 inline constexpr std::size_t fewest_places = 3;
+inline constexpr const char* told_of_few_places =
+    "shapes are not compared: fewer than three places tell none apart";
 
 // The distinct places tapped, in order of appearance, and the number of each impact's place.
 struct NumberedPlaces {
@@ -44,6 +46,8 @@ struct ModelComparison {
   core::Shape shape;
   std::vector<double> frequencies_hz;  // at the protocol's Young's modulus
   double band_limit_hz{};
+  // Of the measured modes (rows) and the model's, of springs as they were found; empty: not known.
+  Eigen::MatrixXd assurance;
   std::optional<analysis::ModelUpdate> update;  // unset: no mode has a partner
   bool is_on_springs{false};
   bool is_held_rigidly{false};               // at some fixation, and on no springs

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "analysis/modal/decay/decay_band.hpp"
@@ -196,36 +197,110 @@ int derivatives_of(analysis::Quantity quantity) {
 }
 }  // namespace
 
+namespace {
+// Of one impact that several sensors saw; unset for others, whose strength differs.
+analysis::Likeness likeness_over_sensors(const std::vector<IdentifiedTap>& taps,
+                                         const std::vector<analysis::RepeatedMode>& modes) {
+  constexpr std::size_t fewest_sensors = 3;
+  const std::vector<int> impacts = impacts_of(taps);
+  if (taps.size() < fewest_sensors ||
+      std::ranges::count(impacts, impacts.front()) != std::ssize(impacts)) {
+    return {};
+  }
+  return [decays = decays_of(taps), modes](std::size_t one, std::size_t other) {
+    return analysis::likeness_over(decays, modes, one, other);
+  };
+}
+
+// Taps that are long enough, with what was found in them.
+struct FoundInTaps {
+  std::vector<IdentifiedTap> taps;
+  analysis::ModesOfTaps found;
+};
+
+FoundInTaps looked_at(const analysis::Band& band, std::vector<IdentifiedTap> taps,
+                      TapRemarks& remarks) {
+  FoundInTaps of{std::move(taps), {}};
+  of.found = found_in_parts(band, of.taps, remarks);
+  return of;
+}
+
+// Of many impacts some, over the whole recording: what they say of when decays begin holds for all.
+std::vector<IdentifiedTap> enough_of(const std::vector<IdentifiedTap>& taps) {
+  constexpr std::size_t enough_impacts = 12;
+  const std::vector<int> impacts = impacts_of(taps);
+  const std::set<int> different{impacts.begin(), impacts.end()};
+  const std::size_t every = (different.size() + enough_impacts - 1) / enough_impacts;
+  std::vector<IdentifiedTap> some;
+  std::ranges::copy_if(taps, std::back_inserter(some), [&](const IdentifiedTap& tap) {
+    const auto number = std::distance(different.begin(), different.find(tap.impact));
+    return static_cast<std::size_t>(number) % every == 0;
+  });
+  return some;
+}
+
+std::vector<analysis::RepeatedMode> died_before(double after_s, const analysis::Band& band,
+                                                const FoundInTaps& first,
+                                                const analysis::ModesOfTaps& later) {
+  return analysis::died_before(
+      after_s,
+      analysis::distinct_modes(decays_of(first.taps), impacts_of(first.taps), band, first.found),
+      later.modes);
+}
+
+// The free part of the taps; what had died away before that.
+struct FreeTaps {
+  FoundInTaps free;
+  std::vector<analysis::RepeatedMode> died;
+};
+
+FreeTaps free_taps(const analysis::Band& band, const std::vector<IdentifiedTap>& taps,
+                   TapRemarks& remarks) {
+  const std::vector<IdentifiedTap> some = enough_of(taps);
+  const bool are_all = some.size() == taps.size();
+  TapRemarks of_some;
+  FoundInTaps first = looked_at(band, some, are_all ? remarks : of_some);
+  const double settled_s =
+      first.taps.empty() ? 0.0
+                         : analysis::settled_after_s(decays_of(first.taps), impacts_of(first.taps),
+                                                     band, first.found);
+  if (settled_s <= 0.0) {
+    return {are_all ? std::move(first) : looked_at(band, taps, remarks), {}};
+  }
+  std::vector<IdentifiedTap> later = are_all ? first.taps : taps;
+  begin_later(settled_s, later, remarks);
+  FreeTaps result{looked_at(band, std::move(later), remarks), {}};
+  result.died = died_before(settled_s, band, first, result.free.found);
+  if (!are_all && !result.died.empty()) {
+    first = looked_at(band, taps, of_some);
+    result.died = died_before(settled_s, band, first, result.free.found);
+  }
+  return result;
+}
+}  // namespace
+
 std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
                                                    std::vector<IdentifiedTap>& taps,
                                                    analysis::Quantity quantity,
                                                    TapRemarks& remarks) {
-  analysis::ModesOfTaps found = found_in_parts(band, taps, remarks);
+  FreeTaps ringing = free_taps(band, taps, remarks);
+  taps = std::move(ringing.free.taps);
   if (taps.empty()) {
     return {};
   }
-  const double settled_s =
-      analysis::settled_after_s(decays_of(taps), impacts_of(taps), band, found);
-  std::vector<analysis::RepeatedMode> died;
-  if (settled_s > 0.0) {
-    const std::vector<analysis::RepeatedMode> first =
-        analysis::distinct_modes(decays_of(taps), impacts_of(taps), band, found);
-    begin_later(settled_s, taps, remarks);
-    found = found_in_parts(band, taps, remarks);
-    if (taps.empty()) {
-      return {};
-    }
-    died = analysis::died_before(settled_s, first, found.modes);
-  }
+  const analysis::ModesOfTaps& found = ringing.free.found;
   std::vector<analysis::RepeatedMode> modes =
       analysis::distinct_modes(decays_of(taps), impacts_of(taps), band, found);
   analysis::join_resonances(decays_of(taps), modes);
-  analysis::add_died(died, modes);
+  analysis::add_died(ringing.died, modes);
   std::vector<analysis::FreeDecay> rests;
   std::ranges::transform(taps, std::back_inserter(rests), &IdentifiedTap::rest);
   analysis::mark_background(rests, modes);
   analysis::judge_certainty(median_duration_s(taps), modes);
-  analysis::mark_combinations(modes, derivatives_of(quantity));
+  if (taps.size() == 1) {
+    analysis::judge_single_decay(modes);
+  }
+  analysis::mark_combinations(modes, derivatives_of(quantity), likeness_over_sensors(taps, modes));
   return modes;
 }
 }  // namespace tapstudy::runner

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "analysis/modal/modes/mode_kinds.hpp"
 #include "analysis/modal/modes/mode_shapes.hpp"
@@ -237,9 +238,7 @@ class Identifier {
       return std::nullopt;
     }
     if (result_.places_m.size() < fewest_places) {
-      result_.remarks.push_back(
-          fmt::format("shapes are not compared: of {} tapped, fewer than {} tell none apart",
-                      result_.places_m.size() == 1 ? "one place" : "two places", fewest_places));
+      result_.remarks.emplace_back(told_of_few_places);
       return std::nullopt;
     }
     std::vector<std::string> sensors;
@@ -260,9 +259,8 @@ class Identifier {
     for (const std::size_t i : result_.agreed) {
       poles.push_back({result_.modes[i].frequency_hz.value, result_.modes[i].damping_ratio.value});
     }
-    const MeasuredShapes shapes{result_.places_m,
-                                analysis::tapped_shapes(poles, taps, result_.places_m.size())};
-    return shapes;
+    const Eigen::MatrixXd shapes = analysis::tapped_shapes(poles, taps, result_.places_m.size());
+    return MeasuredShapes{result_.places_m, shapes.cast<std::complex<double>>()};
   }
 
   void sum_up() {

@@ -6,6 +6,7 @@
 
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/files/output_files.hpp"
+#include "runner/laboratory/identify/assurance_matrix.hpp"
 #include "runner/laboratory/identify/modal_report.hpp"
 #include "runner/laboratory/identify/responses/response_identification.hpp"
 namespace tapstudy::runner {
@@ -138,6 +139,7 @@ void write_files(const std::string& directory, const ResponseIdentification& fou
     core::write_new_file(in("identified.yaml"), yaml_of(found));
     core::write_new_file(in("identified.json"), json_of(found) + "\n");
     core::write_new_file(in("shapes.csv"), shapes_csv(found));
+    write_assurance(found, unfinished);
     analysis::draw_svg(stabilisation_of(found.responses), in("stabilisation.svg"));
     analysis::draw_svg(responses_of(found.responses), in("responses.svg"));
   });

@@ -63,10 +63,10 @@ TEST_CASE("the least cost of an assignment is SciPy's", "[analysis][modal]") {
 
 TEST_CASE("shapes in proportion have an assurance of 1, orthogonal ones and none of 0",
           "[analysis][modal]") {
-  const Eigen::Vector3d shape{1.0, -2.0, 0.5};
-  CHECK(modal_assurance(shape, -3.0 * shape) == Approx(1.0).epsilon(1e-12));
-  CHECK(modal_assurance(shape, Eigen::Vector3d{2.0, 1.0, 0.0}) == Approx(0.0).margin(1e-12));
-  CHECK(modal_assurance(shape, Eigen::Vector3d::Zero()) == 0.0);
+  const Eigen::Vector3cd shape{1.0, -2.0, 0.5};
+  CHECK(modal_assurance(shape, std::complex{0.0, -3.0} * shape) == Approx(1.0).epsilon(1e-12));
+  CHECK(modal_assurance(shape, Eigen::Vector3cd{2.0, 1.0, 0.0}) == Approx(0.0).margin(1e-12));
+  CHECK(modal_assurance(shape, Eigen::Vector3cd::Zero()) == 0.0);
 }
 
 TEST_CASE("what channels say of one impact is one observation", "[analysis][modal]") {
@@ -507,6 +507,28 @@ TEST_CASE("a mode where a sideband would be is a mode if its mirror image is mis
   CHECK(modes[1].standing == Standing::agreed);
 }
 
+TEST_CASE("what lies at a sideband and moves otherwise than the carrier is a mode",
+          "[analysis][modal]") {
+  std::vector<RepeatedMode> modes = modulated(1.0);
+  mark_combinations(modes, 2, [](std::size_t one, std::size_t) { return one == 1 ? 0.2 : 0.9; });
+  CHECK(modes[1].standing == Standing::agreed);
+  CHECK(modes[3].standing == Standing::combination);
+}
+
+TEST_CASE("of a single decay weak neighbours of a mode and pulses are doubtful",
+          "[analysis][modal]") {
+  std::vector<RepeatedMode> modes{certain_mode(39.0, 0.02, 0.5), certain_mode(46.0, 0.02, 8.0),
+                                  certain_mode(53.0, 0.01, 1.0), certain_mode(130.0, 0.02, 0.5),
+                                  certain_mode(300.0, 0.2, 5.0)};
+  judge_single_decay(modes);
+  CHECK(modes[0].standing == Standing::doubtful);
+  CHECK_THAT(modes[0].why, Contains("46 Hz"));
+  CHECK(modes[1].standing == Standing::agreed);
+  CHECK(modes[2].standing == Standing::agreed);  // 18 dB
+  CHECK(modes[3].standing == Standing::agreed);  // far from any stronger one
+  CHECK(modes[4].standing == Standing::doubtful);
+}
+
 TEST_CASE("what rings longer than the motions that would make it is no product of theirs",
           "[analysis][modal]") {
   std::vector<RepeatedMode> modes = modulated(0.75);
@@ -547,6 +569,25 @@ std::vector<RepeatedMode> joined_from(const std::vector<Shares>& shares, double 
 }
 const std::vector<Shares> in_proportion{{0.5, 0.15}, {0.7, 0.21}, {1.0, 0.3}, {0.6, 0.18}};
 }  // namespace
+
+TEST_CASE("a part of a mode is none again by what overlaps it", "[analysis][modal]") {
+  std::vector<FreeDecay> decays;
+  for (const double strength : {0.5, 1.0, 0.7}) {
+    decays.push_back(testing::planted_decay({{{300.0, 0.004}, strength},
+                                             {{304.0, 0.03}, 0.6 * strength},
+                                             {{312.0, 0.012}, 0.2 * strength}},
+                                            3000.0, 0.5));
+  }
+  // the third overlaps the second, and the second the first
+  std::vector<RepeatedMode> modes{certain_mode(300.0, 0.004, 0.7), certain_mode(304.0, 0.03, 0.4),
+                                  certain_mode(312.0, 0.012, 0.14)};
+  join_resonances(decays, modes);
+  CHECK(modes[0].standing == Standing::agreed);
+  for (const std::size_t part : {1, 2}) {
+    CHECK(modes[part].standing == Standing::doubtful);
+    CHECK_THAT(modes[part].why, Contains("300 Hz"));
+  }
+}
 
 TEST_CASE("what overlaps a mode, dies away sooner and follows its amplitude is a part of it",
           "[analysis][modal]") {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/modal/response/residue_shapes.hpp"
+#include "analysis/modal/modes/mode_shapes.hpp"
 #include "core/error.hpp"
 #include "support/catch.hpp"
 #include "support/synthetic_responses.hpp"
@@ -51,7 +51,7 @@ TEST_CASE("without noise, poles, residues and shapes of responses are those of t
       const auto residue = structure.residue(mode, place, 0);
       CHECK(std::abs(one.residues[place] - residue) < 1e-5 * one.residues.cwiseAbs().maxCoeff());
     }
-    CHECK(complex_assurance(one.shape, shape) == Approx(1.0));
+    CHECK(modal_assurance(one.shape, shape) == Approx(1.0));
     CHECK(one.shape.cwiseAbs().maxCoeff() == Approx(1.0));
   }
 }

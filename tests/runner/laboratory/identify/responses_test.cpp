@@ -1,6 +1,8 @@
 // `identify` of frequency responses.
 #include <fmt/format.h>
 
+#include <complex>
+#include <numbers>
 #include <sstream>
 
 #include "analysis/statistics/csv_rows.hpp"
@@ -51,6 +53,34 @@ TEST_CASE("identify makes of frequency responses what it makes of taps, and shap
                 .margin(0.03));
     }
   }
+}
+
+TEST_CASE("sidebands of a mode of responses are named, what moves otherwise is a mode",
+          "[runner][identify][responses]") {
+  const testing::PlantedStructure modulated{{{16.0, 0.02}, {141.0, 0.01}}, 4};
+  const auto shape = GENERATE(std::size_t{0}, std::size_t{1});
+  analysis::FrequencyResponses responses = testing::planted_responses(
+      modulated, analysis::ResponseKind::accelerance, {10.0, 180.0}, 681, 60.0);
+  for (const double beside_hz : {-16.0, 16.0}) {
+    const double hz = 141.0 + beside_hz;
+    const auto p = analysis::log_of({hz, (141.0 * 0.01 + 16.0 * 0.02) / hz}, 1.0);
+    for (Eigen::Index line = 0; line < responses.frequency_hz.size(); ++line) {
+      const std::complex<double> s{0.0, 2.0 * std::numbers::pi * responses.frequency_hz[line]};
+      for (int place = 0; place < modulated.places; ++place) {
+        const auto r = 0.1 * modulated.residue(1, place, 0) * modulated.displacement(shape, place) /
+                       modulated.displacement(1, place);
+        responses.values(line, place) += s * s * (r / (s - p) + std::conj(r) / (s - std::conj(p)));
+      }
+    }
+  }
+  const testing::TempDirectory directory;
+  testing::write(directory / "panel.uff", testing::universal_file(responses));
+  const auto run = testing::tapstudy(
+      {"identify", directory / "panel.uff", "--out", directory / "found", "--json"});
+  INFO(run.standard_output << run.standard_error);
+  REQUIRE(run.exit_code == 0);
+  CHECK((run.standard_output.find("\"standing\": \"combination\"") != std::string::npos) ==
+        (shape == 1));
 }
 
 TEST_CASE("identify takes recordings or frequency responses, and of these no taps' options",

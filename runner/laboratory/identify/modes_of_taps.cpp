@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <set>
 #include <utility>
 
 #include "analysis/modal/decay/decay_band.hpp"
@@ -225,20 +224,6 @@ FoundInTaps looked_at(const analysis::Band& band, std::vector<IdentifiedTap> tap
   return of;
 }
 
-// Of many impacts some, over the whole recording: what they say of when decays begin holds for all.
-std::vector<IdentifiedTap> enough_of(const std::vector<IdentifiedTap>& taps) {
-  constexpr std::size_t enough_impacts = 12;
-  const std::vector<int> impacts = impacts_of(taps);
-  const std::set<int> different{impacts.begin(), impacts.end()};
-  const std::size_t every = (different.size() + enough_impacts - 1) / enough_impacts;
-  std::vector<IdentifiedTap> some;
-  std::ranges::copy_if(taps, std::back_inserter(some), [&](const IdentifiedTap& tap) {
-    const auto number = std::distance(different.begin(), different.find(tap.impact));
-    return static_cast<std::size_t>(number) % every == 0;
-  });
-  return some;
-}
-
 std::vector<analysis::RepeatedMode> died_before(double after_s, const analysis::Band& band,
                                                 const FoundInTaps& first,
                                                 const analysis::ModesOfTaps& later) {
@@ -256,25 +241,18 @@ struct FreeTaps {
 
 FreeTaps free_taps(const analysis::Band& band, const std::vector<IdentifiedTap>& taps,
                    TapRemarks& remarks) {
-  const std::vector<IdentifiedTap> some = enough_of(taps);
-  const bool are_all = some.size() == taps.size();
-  TapRemarks of_some;
-  FoundInTaps first = looked_at(band, some, are_all ? remarks : of_some);
+  FoundInTaps first = looked_at(band, taps, remarks);
   const double settled_s =
       first.taps.empty() ? 0.0
                          : analysis::settled_after_s(decays_of(first.taps), impacts_of(first.taps),
                                                      band, first.found);
   if (settled_s <= 0.0) {
-    return {are_all ? std::move(first) : looked_at(band, taps, remarks), {}};
+    return {std::move(first), {}};
   }
-  std::vector<IdentifiedTap> later = are_all ? first.taps : taps;
+  std::vector<IdentifiedTap> later = first.taps;
   begin_later(settled_s, later, remarks);
   FreeTaps result{looked_at(band, std::move(later), remarks), {}};
   result.died = died_before(settled_s, band, first, result.free.found);
-  if (!are_all && !result.died.empty()) {
-    first = looked_at(band, taps, of_some);
-    result.died = died_before(settled_s, band, first, result.free.found);
-  }
   return result;
 }
 }  // namespace

@@ -91,7 +91,8 @@ std::string journalled_answers_sql(const char* condition) {
       "repetition, status, duration_s, response, is_correct, response_time_s, "
       "time_from_first_contact_s, confidence, is_catch, presented = 'real' "
       "FROM trial JOIN response USING (trial_id) JOIN session USING (session_id) "
-      "WHERE status = 'answered' AND supersedes IS NULL {} ORDER BY trial_id",
+      // by the plus not found by the index of superseding responses, which has those of everybody
+      "WHERE status = 'answered' AND +supersedes IS NULL {} ORDER BY trial_id",
       condition);
 }
 }  // namespace

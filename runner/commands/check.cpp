@@ -20,7 +20,7 @@
 #include "runner/session/stimuli/model_library.hpp"
 #include "runner/session/stimuli/stimulus_family.hpp"
 #include "runner/studies/counted.hpp"
-#include "runner/studies/simulated_study.hpp"
+#include "runner/studies/simulated_design.hpp"
 #include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -31,6 +31,8 @@ struct CheckOptions {
   std::string seed{"1"};
   std::string rig;
   int simulations{0};
+  std::string share;
+  std::string out;
 };
 // Newmark's amplification of an overdamped mode is negative at large steps: the force changes sign
 // with every tick.
@@ -138,33 +140,23 @@ void print_contact(const protocols::Protocol& protocol, int delay_ticks) {
   }
 }
 
-void print_simulated(const SimulatedDesign& design, const protocols::Protocol& protocol) {
+void run_simulations(const SimulatedDesign& design, const protocols::Protocol& protocol,
+                     const std::string& out) {
   check_trial_length(protocol);
   listen_for_stop();
-  const auto results = simulate_design(design, protocol);
-  fmt::print("\n{} simulated studies of {} participants, with the parameters of `simulation`\n",
-             design.studies, design.participants);
-  for (const ResultOfDesign& result : results) {
-    fmt::print("  {}: {} {:.3g}{}; median width of the 95 % intervals {:.2g}", result.block,
-               result.name, result.mean,
-               result.found > 1
-                   ? fmt::format(", standard deviation {:.2g} between studies", result.spread)
-                   : "",
-               result.median_width);
-    if (result.tested > 0) {
-      fmt::print("; p < .05 in {} of {}", result.significant, result.tested);
-    }
-    if (result.found < design.studies) {
-      fmt::print("; not found in {}", design.studies - result.found);
-    }
-    fmt::print("\n");
+  if (out.empty()) {
+    fmt::print("\n{}", describe_design(design.participants, simulate_design(design, protocol)));
+    return;
   }
-  if (results.empty()) {
-    fmt::print(
-        "  no simulated study had a result that is one number: no threshold could be found, or "
-        "what "
-        "participants choose, prefer and rate follows from the protocol's reference alone\n");
-  }
+  SharedSimulation share = shared_simulation(design.share, protocol);
+  share.participants = design.participants;
+  share.studies = design.studies;
+  share.seed = design.seed;
+  write_complete_share(out, share, [&](const std::string& /*unfinished*/) {
+    return simulate_design(design, protocol);
+  });
+  fmt::print("\nshare {} of {} simulated studies\n{}\n", to_text(design.share), design.studies,
+             out);
 }
 
 // A page of it, or all.
@@ -179,13 +171,21 @@ void print_schedule(const protocols::Schedule& schedule, bool is_whole) {
   }
 }
 
-void run_check(const CheckOptions& options) {
-  const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
-  const int participants = planned_participants(options.participants, protocol);
+void check_simulations(const CheckOptions& options) {
   if (options.simulations < 0 || options.simulations > 10000) {
     throw core::InvalidInput{
         fmt::format("--simulations: {} is not allowed (from 0 to 10000)", options.simulations)};
   }
+  if (options.share.empty() != options.out.empty() ||
+      (!options.share.empty() && options.simulations == 0)) {
+    throw core::InvalidInput{"--share of `check` goes with --simulations and --out"};
+  }
+}
+
+void run_check(const CheckOptions& options) {
+  const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
+  const int participants = planned_participants(options.participants, protocol);
+  check_simulations(options);
   int delay_ticks = 0;
   std::optional<protocols::Rig> rig;
   if (!options.rig.empty()) {
@@ -214,9 +214,10 @@ void run_check(const CheckOptions& options) {
              options.seed, group == nullptr ? "" : fmt::format(", in group {}", group->name));
   print_schedule(make_schedule(protocol, seed, index), options.shows_schedule);
   if (options.simulations > 0) {
-    print_simulated(
-        {options.protocol, participants, options.simulations, seed_from(options.seed, "--seed")},
-        protocol);
+    run_simulations(
+        {options.protocol, participants, options.simulations, seed_from(options.seed, "--seed"),
+         options.share.empty() ? Share{} : share_from(options.share)},
+        protocol, options.out);
   }
 }
 }  // namespace
@@ -233,6 +234,9 @@ void add_check(CommandParser& line) {
       "does not render");
   command.option_with_default("--simulations", options->simulations,
                               "Simulate the study so often: power, and widths of intervals");
+  command.option("--share", options->share,
+                 "K/N: only the studies of share K of N; `merge` puts the shares together");
+  command.option("--out", options->out, "With --share: its directory");
   command.flag("--schedule", options->shows_schedule, "All trials of the schedule shown");
   command.on_run([options] { run_check(*options); });
 }

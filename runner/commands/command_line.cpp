@@ -242,6 +242,7 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_check(line);
   add_run(line);
   add_simulate(line);
+  add_merge(line);
   add_report(line);
   add_export(line);
   add_amend(line);

@@ -81,6 +81,7 @@ class CommandParser {
 void add_check(CommandParser& line);
 void add_run(CommandParser& line);
 void add_simulate(CommandParser& line);
+void add_merge(CommandParser& line);
 void add_report(CommandParser& line);
 void add_export(CommandParser& line);
 void add_amend(CommandParser& line);

@@ -15,9 +15,11 @@
 #include "analysis/report/writers.hpp"
 #include "core/error.hpp"
 #include "core/files/output_files.hpp"
+#include "core/files/scratch_directory.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/studies/mixed_models/fit_in_r.hpp"
+#include "runner/studies/shares/merge.hpp"
 #include "runner/studies/study_summary.hpp"
 #include "runner/studies/table_summary.hpp"
 #include "runner/terminal/logging.hpp"
@@ -58,9 +60,8 @@ results::Store store_to_report(const std::string& directory) {
   return results::Store::from_journal(directory);
 }
 
-Summary summary_of_directories(const ReportOptions& options,
-                               const std::vector<std::string>& directories,
-                               const std::vector<std::string>& only) {
+Summary summary_of_stores(const ReportOptions& options, const std::vector<std::string>& directories,
+                          const std::vector<std::string>& only) {
   std::vector<results::Store> stores;
   std::vector<results::SessionRow> sessions;
   for (const std::string& directory : directories) {
@@ -74,6 +75,18 @@ Summary summary_of_directories(const ReportOptions& options,
   }
   return summary_of_study(studies, mode_of(options, sessions), Detail::all, only,
                           fit_mixed_models_in_r);
+}
+
+// Shares of one simulation make together what one run would have stored.
+Summary summary_of_directories(const ReportOptions& options,
+                               const std::vector<std::string>& directories,
+                               const std::vector<std::string>& only) {
+  if (directories.size() == 1 || !are_shares(directories)) {
+    return summary_of_stores(options, directories, only);
+  }
+  const core::ScratchDirectory whole;
+  write_whole(whole_of(directories), whole.path());
+  return summary_of_stores(options, {whole.path()}, only);
 }
 
 // Splits the text as a row of a table: a comma within an answer is in quotes.

@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <thread>
 #include <vector>
 
-#include "analysis/statistics/quantiles.hpp"
 #include "analysis/statistics/resampling/replicates.hpp"
 #include "core/error.hpp"
-#include "core/files/scratch_directory.hpp"
 #include "core/random/rng.hpp"
 #include "device/device.hpp"
 #include "protocols/schedule/groups.hpp"
@@ -28,7 +25,6 @@
 #include "runner/session/participants/simulated_participant.hpp"
 #include "runner/session/trial_loop/real_plates.hpp"
 #include "runner/session/trial_loop/trial_loop.hpp"
-#include "runner/studies/study_summary.hpp"
 #include "runner/terminal/logging.hpp"
 #include "runner/terminal/process_exit.hpp"
 namespace tapstudy::runner {
@@ -65,32 +61,35 @@ SimulatedSessions add_sessions(SessionPlan plan, const protocols::Protocol& prot
   return added;
 }
 
+// The places of simulated participants follow from their numbers, whatever share they are in.
+void check_has_none(results::Store& store, const std::string& directory) {
+  for (const results::SessionRow& session : store.sessions()) {
+    if (session.mode == results::Mode::simulated) {
+      throw core::InvalidInput{
+          fmt::format("{}: participant '{}' is in this study already (choose "
+                      "another --out)",
+                      directory, session.participant_id)};
+    }
+  }
+}
+
 std::vector<SimulatedSessions> add_participants(const SimulatedStudy& study,
                                                 const protocols::Protocol& protocol,
                                                 const protocols::Rig& rig, results::Store& store) {
   std::vector<SimulatedSessions> participants;
-  for (int i = 0; i < study.participants; ++i) {
+  const SharedOut part = part_of(study.share, study.participants, "participants");
+  for (int i = part.first; i < part.end; ++i) {
     SessionPlan plan{
         fmt::format("sim-{:02}", i + 1),
-        0,
-        0,
+        i,
+        i,
         results::Mode::simulated,
         core::derived_seed(study.seed, core::Purpose::participant, static_cast<std::uint64_t>(i)),
         "simulated hand",
         "virtual time",
         ""};
-    const auto all_of_them = [](const std::string& /*id*/) { return true; };
-    const auto place = store.place_of(plan.participant_id, plan.mode, {all_of_them, all_of_them});
-    plan.participant_index = place.participant_index;
-    plan.order_index = place.order_index;
-    if (const protocols::Group* const group = group_of(protocol, place.order_index)) {
+    if (const protocols::Group* const group = group_of(protocol, plan.order_index)) {
       plan.group = results::GroupRow{group->name};
-    }
-    if (store.has_sessions(plan.participant_id)) {
-      throw core::InvalidInput{
-          fmt::format("{}: participant '{}' is in this study already (choose "
-                      "another --out)",
-                      study.directory, plan.participant_id)};
     }
     participants.push_back(add_sessions(plan, protocol, rig, store));
   }
@@ -179,7 +178,10 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   const bool is_new = !results::Store::has_database(study.directory);
   results::Store store = open_study(study.directory, protocol, study.protocol_file);
   std::vector<SimulatedSessions> participants;
-  store.in_one_transaction([&] { participants = add_participants(study, protocol, rig, store); });
+  store.in_one_transaction([&] {
+    check_has_none(store, study.directory);
+    participants = add_participants(study, protocol, rig, store);
+  });
   if (is_new) {
     store.suspend_sync();
   }
@@ -193,80 +195,5 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   store.resume_sync();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   return {tapped.trials, static_cast<double>(tapped.ticks) / protocol.rate_hz, wall.count()};
-}
-
-namespace {
-constexpr double alpha = 0.05;
-
-struct Found {
-  std::string block;
-  std::string name;
-  std::vector<analysis::MainResult> results;
-};
-
-ResultOfDesign result_of(const Found& found) {
-  std::vector<double> estimates;
-  std::vector<double> widths;
-  ResultOfDesign result{
-      .block = found.block, .name = found.name, .found = static_cast<int>(found.results.size())};
-  for (const analysis::MainResult& one : found.results) {
-    estimates.push_back(one.estimate);
-    widths.push_back(one.range.high - one.range.low);
-    result.tested += one.p ? 1 : 0;
-    result.significant += one.p && *one.p < alpha ? 1 : 0;
-  }
-  const analysis::MeanAndSpread estimated = analysis::mean_and_spread(estimates);
-  result.mean = estimated.mean;
-  result.spread = estimated.standard_deviation;
-  result.median_width = analysis::quantile(widths, 0.5);
-  return result;
-}
-
-analysis::Summary summary_of_one(const SimulatedDesign& design, std::size_t study,
-                                 const protocols::Protocol& protocol, ModelLibrary& models) {
-  const std::uint64_t seed = core::derived_seed(design.seed, core::Purpose::study, study);
-  const core::ScratchDirectory directory;
-  simulate({.protocol_file = design.protocol_file,
-            .directory = directory.path(),
-            .participants = design.participants,
-            .seed = seed,
-            .keeps_traces = false,
-            .threads = 1},
-           protocol, models);
-  results::Store store = results::Store::open_existing(directory.path());
-  return summary_of_study({{directory.path(), &store}}, results::Mode::simulated,
-                          Detail::main_results);
-}
-}  // namespace
-
-std::vector<ResultOfDesign> simulate_design(const SimulatedDesign& design,
-                                            const protocols::Protocol& protocol) {
-  const auto studies = static_cast<std::size_t>(design.studies);
-  Progress progress{
-      fmt::format("simulating {} studies of {} participants", studies, design.participants)};
-  ModelLibrary models;
-  models.build_all(protocol);
-  std::vector<analysis::Summary> summaries(studies);
-  std::atomic<int> done{0};
-  analysis::parallel_for(studies, 0, [&](std::size_t i) {
-    stop_if_asked();
-    summaries[i] = summary_of_one(design, i, protocol, models);
-    progress.hook()(fmt::format("{} done", ++done));
-  });
-  std::vector<Found> all;
-  for (const analysis::Summary& summary : summaries) {
-    for (const auto& block : summary.blocks) {
-      for (const analysis::MainResult& result : block->main_results) {
-        auto known = std::ranges::find_if(all, [&](const Found& found) {
-          return found.block == block->block && found.name == result.name;
-        });
-        known = known == all.end() ? all.insert(known, {block->block, result.name, {}}) : known;
-        known->results.push_back(result);
-      }
-    }
-  }
-  std::vector<ResultOfDesign> results;
-  std::ranges::transform(all, std::back_inserter(results), result_of);
-  return results;
 }
 }  // namespace tapstudy::runner

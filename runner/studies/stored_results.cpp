@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/statistics/resampling/replicates.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "results/export/table.hpp"
 #include "results/rows.hpp"
 #include "results/store/form_amendments.hpp"
 #include "results/store/study_queries.hpp"
-#include "runner/session/engine/adaptive_blocks.hpp"
 #include "runner/session/engine/between_trials.hpp"
 #include "runner/session/engine/remaining_trials.hpp"
 #include "runner/studies/stored_study.hpp"
@@ -81,28 +81,25 @@ TrackResult result_of(const protocols::Track& track, const protocols::TrackSetti
   return result;
 }
 
-// Unset: the participant has no session.
-std::optional<AdaptiveBlocks> replayed(const protocols::Protocol& protocol,
-                                       const std::string& participant, results::Store& store) {
-  const auto session = store.latest_session(participant);
-  if (!session) {
-    return std::nullopt;
-  }
-  const protocols::Schedule schedule = protocols::make_schedule(
-      protocol, session->seed, session->order_index, session->planned_order);
-  return AdaptiveBlocks{protocol, session->seed, schedule, store.answers_as_given(participant)};
+// What a replay takes of the store.
+struct AnswersInOrder {
+  results::SessionRow session;  // the participant's latest; all have one order
+  std::vector<results::JournalledAnswer> answers;
+};
+
+AdaptiveBlocks replayed(const protocols::Protocol& protocol, const AnswersInOrder& of) {
+  return {protocol, of.session.seed,
+          protocols::make_schedule(protocol, of.session.seed, of.session.order_index,
+                                   of.session.planned_order),
+          of.answers};
 }
 
 void add_tracks(const protocols::Protocol& protocol, const std::string& participant,
-                results::Store& store, std::vector<TrackResult>& results) {
-  const auto adaptive = replayed(protocol, participant, store);
-  if (!adaptive) {
-    return;
-  }
+                const AdaptiveBlocks& adaptive, std::vector<TrackResult>& results) {
   for (const Block& block : protocol.blocks) {
     for (std::size_t i = 0; has_results(block) && i < block.comparison->tracks.size(); ++i) {
       TrackResult result =
-          result_of(adaptive->tracks_of(block.name).track(i), *block.comparison->tracks[i]);
+          result_of(adaptive.tracks_of(block.name).track(i), *block.comparison->tracks[i]);
       result.participant_id = participant;
       result.block = block.name;
       result.is_signed = block.comparison->side == protocols::Side::either;
@@ -113,42 +110,48 @@ void add_tracks(const protocols::Protocol& protocol, const std::string& particip
 }
 }  // namespace
 
-std::vector<TrackResult> track_results(const protocols::Protocol& protocol,
-                                       const std::vector<StudyStore>& stores, results::Mode mode) {
-  std::vector<TrackResult> results;
-  if (std::ranges::none_of(protocol.blocks, has_results)) {
-    return results;
-  }
-  for (const StudyStore& each : stores) {
-    const auto excluded = each.store->excluded_participants();
-    std::set<std::string> participants;
-    for (const results::SessionRow& session : each.store->sessions()) {
-      if (session.mode == mode && !excluded.contains(session.participant_id)) {
-        participants.insert(session.participant_id);
-      }
+ReplayedTracks::ReplayedTracks(const protocols::Protocol& protocol, results::Store& store)
+    : protocol_{protocol},
+      store_{store},
+      has_any_{std::ranges::any_of(protocol.blocks, has_results)} {}
+
+void ReplayedTracks::replay(const std::set<std::string>& participants) {
+  std::vector<std::pair<AnswersInOrder, std::optional<AdaptiveBlocks>*>> missing;
+  for (const std::string& participant : participants) {
+    const auto [person, is_new] = people_.try_emplace(participant);
+    if (!is_new || !has_any_) {
+      continue;
     }
-    for (const std::string& participant : participants) {
-      add_tracks(protocol, participant, *each.store, results);
+    if (auto session = store_.latest_session(participant)) {
+      missing.push_back(
+          {{std::move(*session), store_.answers_as_given(participant)}, &person->second});
+    }
+  }
+  analysis::parallel_for(missing.size(), 0, [&](std::size_t i) {
+    missing[i].second->emplace(replayed(protocol_, missing[i].first));
+  });
+}
+
+std::vector<TrackResult> ReplayedTracks::results_of(const std::set<std::string>& participants) {
+  replay(participants);
+  std::vector<TrackResult> results;
+  for (const std::string& participant : participants) {
+    if (const auto& adaptive = people_.at(participant)) {
+      add_tracks(protocol_, participant, *adaptive, results);
     }
   }
   return results;
 }
 
-void set_tracks(const protocols::Protocol& protocol, results::Store& store,
-                std::vector<results::AnswerRow>& answers) {
-  if (std::ranges::none_of(protocol.blocks, has_results)) {
-    return;
+void ReplayedTracks::set_tracks(std::vector<results::AnswerRow>& answers) {
+  std::set<std::string> participants;
+  for (const results::AnswerRow& answer : answers) {
+    participants.insert(answer.participant_id);
   }
-  std::map<std::string, std::optional<AdaptiveBlocks>> people;
+  replay(participants);
   for (results::AnswerRow& answer : answers) {
-    auto found = people.find(answer.participant_id);
-    if (found == people.end()) {
-      found =
-          people.emplace(answer.participant_id, replayed(protocol, answer.participant_id, store))
-              .first;
-    }
-    if (found->second) {
-      const auto track = found->second->track_of(answer.number);
+    if (const auto& adaptive = people_.at(answer.participant_id)) {
+      const auto track = adaptive->track_of(answer.number);
       answer.track = track ? std::optional{static_cast<int>(*track) + 1} : std::nullopt;
     }
   }
@@ -156,7 +159,7 @@ void set_tracks(const protocols::Protocol& protocol, results::Store& store,
 
 results::Table tracks_table(const protocols::Protocol& protocol, results::Store& store) {
   std::vector<results::AnswerRow> answers = results::stored_answers(store);
-  set_tracks(protocol, store, answers);
+  ReplayedTracks{protocol, store}.set_tracks(answers);
   std::vector<results::Row> rows;
   for (const results::AnswerRow& answer : answers) {
     if (answer.track) {
@@ -320,15 +323,19 @@ void append(std::vector<Row>& all, std::vector<Row> more) {
 }
 }  // namespace
 
+std::set<std::string> participants_of(results::Store& store, Mode mode) {
+  return participants_of(store.sessions(), store.excluded_participants(), mode);
+}
+
 StoredResults stored_results(results::Store& store, const protocols::Protocol& protocol, Mode mode,
-                             Detail detail) {
+                             ReplayedTracks* tracks) {
   const Excluded excluded = store.excluded_participants();
   StoredResults found;
   found.sessions = store.sessions();
   found.answers = counted_answers(store, mode);
   set_places(found.sessions, found.answers);
-  if (detail == Detail::all) {  // which replays the procedures
-    set_tracks(protocol, store, found.answers);
+  if (tracks != nullptr) {
+    tracks->set_tracks(found.answers);
   }
   std::set<std::string> answering;
   for (const results::AnswerRow& answer : found.answers) {

@@ -1,4 +1,7 @@
 #pragma once
+#include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -7,17 +10,27 @@
 #include "protocols/protocol.hpp"
 #include "results/export/table.hpp"
 #include "results/store/store.hpp"
+#include "runner/session/engine/adaptive_blocks.hpp"
 #include "runner/studies/stored_study.hpp"
-#include "runner/studies/study_summary.hpp"
 namespace tapstudy::runner {
-// Results of the adaptive procedures in blocks that are no practice, for each participant of one
-// mode who was not excluded.
-std::vector<analysis::TrackResult> track_results(const protocols::Protocol& protocol,
-                                                 const std::vector<StudyStore>& stores,
-                                                 results::Mode mode);
-// Sets the answers' tracks, of one store.
-void set_tracks(const protocols::Protocol& protocol, results::Store& store,
-                std::vector<results::AnswerRow>& answers);
+// The adaptive procedures of one store's participants, replayed from their answers once. Both
+// outlive it.
+class ReplayedTracks {
+ public:
+  ReplayedTracks(const protocols::Protocol& protocol, results::Store& store);
+  // Replays those who have not been yet, at once on all processors.
+  void replay(const std::set<std::string>& participants);
+  // Results of the procedures in blocks that are no practice.
+  std::vector<analysis::TrackResult> results_of(const std::set<std::string>& participants);
+  // Sets the answers' tracks.
+  void set_tracks(std::vector<results::AnswerRow>& answers);
+
+ private:
+  const protocols::Protocol& protocol_;
+  results::Store& store_;
+  bool has_any_;
+  std::map<std::string, std::optional<AdaptiveBlocks>> people_;  // unset: has no session
+};
 // The procedure that chose each answered trial's level.
 results::Table tracks_table(const protocols::Protocol& protocol, results::Store& store);
 
@@ -32,8 +45,12 @@ struct StoredResults {
   analysis::Presentations presentations;
 };
 
+// With the tracks of their answers, unless they are not given.
 StoredResults stored_results(results::Store& store, const protocols::Protocol& protocol,
-                             results::Mode mode, Detail detail);
+                             results::Mode mode, ReplayedTracks* tracks);
+
+// Those of the mode who were not excluded.
+std::set<std::string> participants_of(results::Store& store, results::Mode mode);
 
 // Participants are counted on, since each of them has an order of their own to draw again. Their
 // balanced orders stay those that they had.

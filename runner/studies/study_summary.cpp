@@ -309,11 +309,30 @@ class Wanted {
   bool is_all_{};
 };
 
+// Whether a block is shown whose levels procedures chose.
+bool wants_tracks(const protocols::Protocol& protocol, const Wanted& wanted) {
+  return std::ranges::any_of(protocol.blocks, [&](const protocols::Block& block) {
+    return block.comparison && wanted.has(block.name);
+  });
+}
+
+std::vector<analysis::TrackResult> track_results(const std::vector<StudyStore>& stores,
+                                                 results::Mode mode,
+                                                 std::vector<ReplayedTracks>& tracks) {
+  std::vector<analysis::TrackResult> results;
+  for (std::size_t i = 0; i < stores.size(); ++i) {
+    std::ranges::move(tracks[i].results_of(participants_of(*stores[i].store, mode)),
+                      std::back_inserter(results));
+  }
+  return results;
+}
+
 // The sections of a report besides the results of its blocks.
 std::vector<analysis::ReportSection> sections_of(const protocols::Protocol& protocol,
                                                  const std::vector<StudyStore>& stores,
                                                  results::Mode mode, const DoneBlocks& done,
-                                                 const Wanted& wanted) {
+                                                 const Wanted& wanted,
+                                                 std::vector<ReplayedTracks>& tracks) {
   namespace names = analysis::study_sections;
   std::vector<analysis::ReportSection> sections;
   const auto add = [&](std::string_view name, const auto& compute) {
@@ -324,7 +343,7 @@ std::vector<analysis::ReportSection> sections_of(const protocols::Protocol& prot
   add(names::sessions, [&] { return course(protocol, stores, mode); });
   add(names::confidence, [&] { return confidence(protocol, stores, mode); });
   add(names::procedures,
-      [&] { return analysis::procedures_section(track_results(protocol, stores, mode)); });
+      [&] { return analysis::procedures_section(track_results(stores, mode, tracks)); });
   add(names::questionnaires, [&] {
     return analysis::questionnaires_section(questionnaires_of(protocol),
                                             given_answers(stores, mode));
@@ -541,11 +560,14 @@ std::vector<analysis::RepeatedBlock> repeated_blocks(const protocols::Protocol& 
 }
 
 // Hypotheses are adjusted for the number of all of them, so that theirs are always computed, and
-// contrasts, groups and what is measured again are of all blocks. A block without answers is one
-// that the report tells of.
+// contrasts, groups and what is measured again are of all blocks, whose main results do. A block
+// without answers is one that the report tells of.
 void leave_out_unwanted(const Wanted& wanted, const std::vector<results::AnswerRow>& answers,
                         analysis::StudyDesign& design) {
   namespace names = analysis::study_sections;
+  for (analysis::BlockDesign& block : design.blocks) {
+    block.is_for_main_results = !wanted.has(block.name);
+  }
   if (wanted.has(names::contrasts) || wanted.has(names::groups) || wanted.has(names::retest) ||
       wanted.has(names::mixed_models)) {
     return;
@@ -604,11 +626,16 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
   check_different_participants(stores);
   const results::StudyRow study = stores.front().store->study();
   const protocols::Protocol protocol = stored_protocol(*stores.front().store);
+  const Wanted wanted{only, protocol};
+  const bool shows_tracks = detail == Detail::all && wants_tracks(protocol, wanted);
   StoredResults all;
   std::vector<std::string> directories;
+  std::vector<ReplayedTracks> tracks;  // of each store
   for (const StudyStore& each : stores) {
     check_names(*each.store, protocol);
-    append(all, stored_results(*each.store, protocol, mode, detail));
+    tracks.emplace_back(protocol, *each.store);
+    append(all,
+           stored_results(*each.store, protocol, mode, shows_tracks ? &tracks.back() : nullptr));
     directories.push_back(each.directory);
   }
   if (std::ranges::all_of(stores,
@@ -629,11 +656,10 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     }
     return analysis::summarise(design, all.answers, all.visits, all.presentations);
   }
-  const Wanted wanted{only, protocol};
   leave_out_unwanted(wanted, all.answers, design);
   Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
   const DoneBlocks done = done_blocks(stores, mode);
-  summary.sections = sections_of(protocol, stores, mode, done, wanted);
+  summary.sections = sections_of(protocol, stores, mode, done, wanted, tracks);
   add_comparisons(protocol, all, fit_mixed_models, wanted, summary);
   summary.provenance = provenance(study, protocol, all.sessions);
   summary.procedure = describe_procedure(protocol, all.sessions, summary.participant_ids, done);

@@ -225,7 +225,7 @@ bool is_raw_tlx(const Form& form) {
 Form nasa_tlx(const std::string& language) {
   const auto found = std::ranges::find(wordings, language, &Wording::language);
   const Wording& wording = found == wordings.end() ? wordings.front() : *found;
-  Form form{"nasa_tlx", wording.title, wording.text, {}};
+  Form form{"nasa_tlx", wording.title, wording.text, {}, {}};
   for (std::size_t i = 0; i < item_names.size(); ++i) {
     form.items.push_back(scale(wording, i));
   }

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "protocols/picture.hpp"
 namespace tapstudy::protocols {
 inline constexpr std::size_t max_form_text = 5000;  // characters
 
@@ -27,6 +29,7 @@ constexpr std::string_view name(ItemKind kind) {
 struct Option {
   std::string name;
   std::string label;
+  std::optional<Picture> picture{};
 };
 
 inline constexpr char between_choices = ';';
@@ -44,6 +47,7 @@ struct FormItem {
   std::string name;
   ItemKind kind{ItemKind::text};
   std::string question;
+  std::optional<Picture> picture{};  // beside the question
   bool is_required{true};
   int steps{7};     // likert
   std::string low;  // likert, scale: what the ends mean
@@ -62,6 +66,7 @@ struct Form {
   std::string title;
   std::string text;  // paragraphs before the first question; may be empty
   std::vector<FormItem> items;
+  std::optional<Picture> picture{};  // after the text
 };
 
 // Answers by item, those left out being absent.

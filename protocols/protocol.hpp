@@ -218,6 +218,7 @@ struct Block {
   bool is_fixed{false};        // in its place, whatever the order of the blocks
   bool gives_feedback{false};  // which answer was right
   std::string instructions;    // before its first trial; may be empty
+  std::optional<Picture> instructions_picture;
   std::optional<Confidence> confidence;
   std::optional<Breaks> breaks;
   std::optional<AnswerCondition> presented_if;  // on forms_before; unset: to all
@@ -274,8 +275,9 @@ struct Hypothesis {
   std::string stimulus;  // chosen_above_chance, rated_highest: which; equivalent: one of them
   std::vector<std::string> factors;  // interaction: of these two
   std::string other_stimulus;        // equivalent: to this one
-  std::string other_block;           // equivalent: the whole block to this one
+  std::string other_block;           // equivalent: the whole block to this one; threshold_ratio
   double within{};  // equivalent: the largest difference that is none; of thresholds the ratio
+  double below{};   // threshold_below: the level that thresholds are expected to lie below
 };
 
 // What the pages of a session show. Of the plate its shape, in neutral colour.
@@ -301,10 +303,12 @@ struct Protocol {
   // The files that its plates name, whole, and each repaired surface after that which it is made
   // of.
   std::vector<SurfaceSource> surfaces;
+  std::vector<Picture> pictures;  // each file once
   std::string title;
   std::string notes;
   std::optional<int> participants;  // that are planned
   std::string instructions;         // for participants, before the first trial; may be empty
+  std::optional<Picture> instructions_picture;
   double band_limit_hz{};
   double rate_hz{};
   core::RenderSettings rendering;

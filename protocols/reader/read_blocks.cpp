@@ -347,7 +347,7 @@ void check_block(MapReader& reader, const Block& block, const Protocol& protocol
 }
 }  // namespace
 
-void read_blocks(MapReader& top, Protocol& protocol) {
+void read_blocks(MapReader& top, const ReadFile& read_file, Protocol& protocol) {
   constexpr int max_seed = 1'000'000'000;
   protocol.counterbalancing_seed = static_cast<std::uint64_t>(top.integer(
       {"counterbalancing_seed", "assigns the balanced orders (order: williams) to participants"}, 0,
@@ -355,7 +355,9 @@ void read_blocks(MapReader& top, Protocol& protocol) {
   top.list({"blocks", "parts of a session, in file order unless block_order says otherwise"},
            Presence::optional, [&](MapReader& reader) {
              const std::size_t earlier_problems = reader.problems_in_file();
-             const Block block = read_block(reader, protocol);
+             Block block = read_block(reader, protocol);
+             block.instructions_picture =
+                 read_instructions_picture(reader, block.instructions, read_file, protocol);
              check_block(reader, block, protocol);
              if (reader.problems_in_file() == earlier_problems) {  // only such a block can be drawn
                check_intervals(reader, block);

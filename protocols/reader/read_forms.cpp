@@ -90,11 +90,24 @@ std::optional<AnswerCondition> read_asked_if(MapReader& item_reader, const Form&
   return condition;
 }
 
+// One for each option, or none.
+void read_option_pictures(MapReader& reader, const ReadFile& read_file, Protocol& protocol,
+                          FormItem& item) {
+  const std::vector<Picture> pictures = read_pictures(
+      reader,
+      {"option_pictures",
+       "single_choice, multiple_choice: beside the options, one for each in their order"},
+      item.options.size(), read_file, protocol);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    item.options[i].picture = pictures[i];
+  }
+}
+
 void read_options(MapReader& reader, FormItem& item) {
   for (const auto& [option, label] : reader.translated_list(
            {"options",
             "single_choice, multiple_choice: to choose from; unset: not of these kinds"})) {
-    item.options.push_back({option, label});
+    item.options.push_back({option, label, {}});
     if (item.kind == ItemKind::multiple_choice && option.find(between_choices) != option.npos) {
       reader.reject("options", fmt::format("'{}' has a '{}', which stands between the choices in "
                                            "the data",
@@ -162,7 +175,8 @@ void read_bids(MapReader& reader, FormItem& item) {
   }
 }
 
-FormItem read_item(MapReader& reader, const Form& form, const Protocol& protocol) {
+FormItem read_item(MapReader& reader, const Form& form, const ReadFile& read_file,
+                   Protocol& protocol) {
   constexpr double any = 1e12;
   FormItem item;
   const Rejection rejected{reader};
@@ -174,6 +188,8 @@ FormItem read_item(MapReader& reader, const Form& form, const Protocol& protocol
                                "number; one of several options; one or more of them; free text"},
                               item_kind_names);
   item.question = reader.translated({"question", "text that participants are asked"});
+  item.picture =
+      read_picture(reader, {"picture", "beside the question; unset: none"}, read_file, protocol);
   item.is_required = reader.yes_or_no({"required", "must be answered"}, true);
   if (item.kind == ItemKind::likert) {
     item.steps = reader.integer({"steps", "likert: from 1 to this"}, 2, 11, item.steps);
@@ -195,6 +211,7 @@ FormItem read_item(MapReader& reader, const Form& form, const Protocol& protocol
   }
   if (item.kind == ItemKind::single_choice || item.kind == ItemKind::multiple_choice) {
     read_options(reader, item);
+    read_option_pictures(reader, read_file, protocol, item);
   }
   read_bids(reader, item);
   item.asked_if = read_asked_if(reader, form, protocol);
@@ -206,7 +223,8 @@ FormItem read_item(MapReader& reader, const Form& form, const Protocol& protocol
   return item;
 }
 
-Form read_form(const std::string& name, MapReader& reader, const Protocol& protocol) {
+Form read_form(const std::string& name, MapReader& reader, const ReadFile& read_file,
+               Protocol& protocol) {
   Form form;
   if (reader.has("shipped")) {
     reader.word(
@@ -219,10 +237,12 @@ Form read_form(const std::string& name, MapReader& reader, const Protocol& proto
     form.name = name;
     form.title = reader.translated({"title", "above the questions; unset: of a shipped form"});
     form.text = reader.translated_paragraphs({"text", "before the questions; paragraphs"}, "");
+    form.picture =
+        read_picture(reader, {"picture", "after the text; unset: none"}, read_file, protocol);
     reader.list(
         {"items", "the questions; unset: of a shipped form"}, Presence::at_least_one,
         [&](MapReader& inner) {
-          const FormItem item = read_item(inner, form, protocol);
+          const FormItem item = read_item(inner, form, read_file, protocol);
           if (std::ranges::find(form.items, item.name, &FormItem::name) != form.items.end()) {
             inner.reject("name", fmt::format("'{}' is the name of an earlier item", item.name));
           }
@@ -261,10 +281,10 @@ void check_bids_columns(MapReader& top, const Protocol& protocol) {
 }
 }  // namespace
 
-void read_forms(MapReader& top, Protocol& protocol) {
+void read_forms(MapReader& top, const ReadFile& read_file, Protocol& protocol) {
   top.each({"forms", "questionnaires, by name"}, Presence::optional,
            [&](const std::string& name, MapReader& reader) {
-             protocol.forms.emplace(name, read_form(name, reader, protocol));
+             protocol.forms.emplace(name, read_form(name, reader, read_file, protocol));
            });
   protocol.forms_before = read_form_names(
       top, {"forms_before", "names of forms, asked before the first trial"}, protocol);

@@ -11,32 +11,44 @@ namespace tapstudy::protocols {
 namespace {
 using Presence = MapReader::Presence;
 
-// In the order of the protocol's blocks, whatever the order in which they are named.
-std::vector<std::string> in_file_order(const std::vector<std::string>& all,
+// In the order of the protocol's blocks, whatever the order in which they are named; a block of
+// several sessions by its name in each of them, or by its own for all.
+std::vector<std::string> in_file_order(const std::vector<Block>& all,
                                        const std::vector<std::string>& named) {
   std::vector<std::string> ordered;
-  std::ranges::copy_if(all, std::back_inserter(ordered), [&](const std::string& block) {
-    return std::ranges::find(named, block) != named.end();
-  });
+  for (const Block& block : all) {
+    if (std::ranges::find(named, block.name) != named.end() ||
+        std::ranges::find(named, block.measure) != named.end()) {
+      ordered.push_back(block.name);
+    }
+  }
   return ordered;
 }
 
 Group read_group(MapReader& reader, const Protocol& protocol) {
   std::vector<std::string> all;
   std::ranges::transform(protocol.blocks, std::back_inserter(all), &Block::name);
+  std::vector<std::string> names = all;
+  for (const Block& block : protocol.blocks) {
+    if (std::ranges::find(names, block.measure) == names.end()) {
+      names.push_back(block.measure);
+    }
+  }
+  const std::size_t earlier_problems = reader.problems_in_file();
   Group group;
   group.name = reader.name({"name", "unique among the groups"});
   const std::string label = reader.text({"label", "what reports call it; unset: its name"}, "");
   group.label = label.empty() ? group.name : label;
   group.blocks = in_file_order(
-      all, reader.words({"blocks",
-                         "names of blocks: the group does these, in file order unless block_order "
-                         "says otherwise; unset: all"},
-                        "block", all, all));
+      protocol.blocks,
+      reader.words({"blocks",
+                    "names of blocks: the group does these, in file order unless block_order "
+                    "says otherwise; unset: all"},
+                   "block", names, all));
   const bool counts = std::ranges::any_of(protocol.blocks, [&](const Block& block) {
     return !block.is_practice && does(&group, block);
   });
-  if (!group.blocks.empty() && !counts) {
+  if (reader.problems_in_file() == earlier_problems && !group.blocks.empty() && !counts) {
     reader.reject("blocks", "are practice alone: nothing that the group does would be reported");
   }
   return group;

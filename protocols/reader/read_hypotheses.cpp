@@ -15,6 +15,10 @@ bool compares_means(Claim claim) {
   return claim == Claim::interaction || claim == Claim::equivalent;
 }
 
+bool is_of_thresholds(Claim claim) {
+  return claim == Claim::threshold_ratio || claim == Claim::threshold_below;
+}
+
 std::vector<std::string> names_of_factors(const Protocol& protocol) {
   std::set<std::string> names;
   for (const Stimulus& stimulus : protocol.stimuli) {
@@ -69,7 +73,8 @@ void read_equivalence(MapReader& reader, const Protocol& protocol,
   if (reader.has("to_block")) {
     hypothesis.other_block = reader.word(
         {"to_block",
-         "block that measures the same, to which this one is expected to be equal; unset: `to`"},
+         "block that measures the same, to which this one is expected to be equal, or whose "
+         "thresholds are expected to be others; unset: `to`"},
         "block", blocks);
     reader.refuse("stimulus", "is for `to`: blocks are compared whole");
   } else {
@@ -96,9 +101,35 @@ void read_equivalence(MapReader& reader, const Protocol& protocol,
   }
 }
 
+void read_threshold(MapReader& reader, const std::vector<std::string>& blocks,
+                    Hypothesis& hypothesis) {
+  constexpr double largest = 1e12;
+  if (hypothesis.claim == Claim::threshold_below) {
+    hypothesis.below = reader.number(
+        {"below",
+         "the level that thresholds are expected to lie below, as the block's levels are given"},
+        Range::positive(largest));
+    return;
+  }
+  hypothesis.other_block = reader.word(
+      {"to_block",
+       "block that measures the same, to which this one is expected to be equal, or whose "
+       "thresholds are expected to be others; unset: `to`"},
+      "block", blocks);
+  if (!hypothesis.other_block.empty() && hypothesis.other_block == hypothesis.block) {
+    reader.reject("to_block", "is the block itself");
+  }
+}
+
 // Blocks are compared by what they measure of a participant, also where procedures choose levels.
 void check_fits_task(MapReader& reader, const Hypothesis& hypothesis, const Block& block) {
   const std::optional<Claim> claim = block.task->claim();
+  if (is_of_thresholds(hypothesis.claim)) {
+    if (!block.comparison || block.comparison->side == Side::either) {
+      reader.reject("block", "has no threshold: its procedures find none");
+    }
+    return;
+  }
   if (!hypothesis.other_block.empty()) {
     if (claim != Claim::accuracy_above_chance && !block.adjustment) {
       reader.reject("to_block", "blocks of this task have no value a participant to compare");
@@ -114,8 +145,8 @@ void check_fits_task(MapReader& reader, const Hypothesis& hypothesis, const Bloc
     reader.reject("claim", "does not fit the task of the block");
   } else if (block.comparison) {
     reader.reject("block",
-                  "has procedures: its threshold is estimated, and no claim is tested (but "
-                  "`equivalent` with `to_block`)");
+                  "has procedures: its threshold is estimated (claims about it: threshold_ratio, "
+                  "threshold_below, `equivalent` with `to_block`)");
   }
 }
 
@@ -130,18 +161,24 @@ void read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
        "accuracy_above_chance for tasks with right answers, chosen_above_chance for choice and "
        "paired, rated_highest for rating; interaction (effects of two factors on right answers or "
        "ratings depend on one another) and equivalent (two stimuli, or two blocks, differ by no "
-       "more than a bound) for tasks with right answers and rating"},
+       "more than a bound) for tasks with right answers and rating; threshold_ratio (two blocks' "
+       "thresholds differ) and threshold_below (they lie below a level) for blocks with "
+       "procedures"},
       {{"accuracy_above_chance", Claim::accuracy_above_chance},
        {"chosen_above_chance", Claim::chosen_above_chance},
        {"rated_highest", Claim::rated_highest},
        {"interaction", Claim::interaction},
-       {"equivalent", Claim::equivalent}});
+       {"equivalent", Claim::equivalent},
+       {"threshold_ratio", Claim::threshold_ratio},
+       {"threshold_below", Claim::threshold_below}});
   const Block* const found = protocol.find_block(hypothesis.block);
   const Block* const block = found != nullptr && found->task != nullptr ? found : nullptr;
   if (hypothesis.claim == Claim::interaction) {
     read_interaction(reader, protocol, block, hypothesis);
   } else if (hypothesis.claim == Claim::equivalent) {
     read_equivalence(reader, protocol, blocks, block, hypothesis);
+  } else if (is_of_thresholds(hypothesis.claim)) {
+    read_threshold(reader, blocks, hypothesis);
   } else if (hypothesis.claim != Claim::accuracy_above_chance) {
     hypothesis.stimulus = reader.word(
         {"stimulus",

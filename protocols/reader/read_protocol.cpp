@@ -35,6 +35,8 @@ void read_whole(MapReader& top, Protocol& protocol, const SurfaceFiles& files,
   }
   protocol.instructions = top.translated_paragraphs(
       {"instructions", "for participants, shown before the first trial; paragraphs"}, "");
+  protocol.instructions_picture =
+      read_instructions_picture(top, protocol.instructions, files.contents, protocol);
   read_rendering(top, protocol);
   read_placement(
       top,
@@ -48,9 +50,9 @@ void read_whole(MapReader& top, Protocol& protocol, const SurfaceFiles& files,
   read_recordings(top, protocol);
   read_contacts(top, protocol);
   read_stimuli(top, protocol);
-  read_forms(top, protocol);
+  read_forms(top, files.contents, protocol);
   read_display(top, protocol);
-  read_blocks(top, protocol);
+  read_blocks(top, files.contents, protocol);
   read_planned_sessions(top, protocol);
   read_block_order(top, protocol);
   read_groups(top, protocol);

@@ -29,13 +29,22 @@ void read_stimuli(MapReader& top, Protocol& protocol);
 AxisValues read_own_rendering(MapReader& stimulus_reader, const Stimulus& stimulus,
                               const Protocol& protocol);
 void read_vary(MapReader& stimulus_reader, const Protocol& protocol, Stimulus& stimulus);
-void read_forms(MapReader& top, Protocol& protocol);
+// A picture beside what participants read.
+std::optional<Picture> read_picture(MapReader& reader, const Key& key, const ReadFile& read_file,
+                                    Protocol& protocol);
+// One for each of so many, in their order; or none.
+std::vector<Picture> read_pictures(MapReader& reader, const Key& key, std::size_t count,
+                                   const ReadFile& read_file, Protocol& protocol);
+// The key `instructions_picture` beside these instructions.
+std::optional<Picture> read_instructions_picture(MapReader& reader, const std::string& instructions,
+                                                 const ReadFile& read_file, Protocol& protocol);
+void read_forms(MapReader& top, const ReadFile& read_file, Protocol& protocol);
 std::vector<std::string> read_form_names(MapReader& reader, const Key& key,
                                          const Protocol& protocol);
 // Of a block.
 std::optional<AnswerCondition> read_presented_if(MapReader& block_reader, const Protocol& protocol);
 void read_display(MapReader& top, Protocol& protocol);
-void read_blocks(MapReader& top, Protocol& protocol);
+void read_blocks(MapReader& top, const ReadFile& read_file, Protocol& protocol);
 // Makes a block for each session of one that is in several.
 void read_planned_sessions(MapReader& top, Protocol& protocol);
 void read_block_order(MapReader& top, Protocol& protocol);

@@ -24,7 +24,9 @@ enum class Claim {
   chosen_above_chance,
   rated_highest,
   interaction,
-  equivalent
+  equivalent,
+  threshold_ratio,
+  threshold_below
 };
 
 // One of the things that can be felt in a trial.

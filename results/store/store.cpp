@@ -243,16 +243,16 @@ void Store::add_surfaces(const StudyRow& study) {
   }
 }
 
-// A session must not go on with another body.
+// A session must not go on with another body, or other pictures.
 void Store::check_surfaces(const StudyRow& study) {
   for (const SurfaceRow& surface : study.surfaces) {
     Statement stored{database_, "SELECT sha256 FROM surface WHERE file = ?"};
     stored.bind(surface.file);
     if (!stored.step() || stored.text(0) != surface.sha256) {
-      throw core::InvalidInput{fmt::format(
-          "{}: '{}' is not the surface that the study began with (put that one back, or "
-          "start a new study)",
-          database_.file(), surface.file)};
+      throw core::InvalidInput{
+          fmt::format("{}: '{}' is not the file that the study began with (put that one back, or "
+                      "start a new study)",
+                      database_.file(), surface.file)};
     }
   }
 }

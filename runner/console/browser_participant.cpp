@@ -44,8 +44,9 @@ void BrowserParticipant::tell(Message message) {
   answer_to({.kind = ScreenKind::message, .message = message});
 }
 
-void BrowserParticipant::read(const std::string& instructions) {
-  answer_to({.kind = ScreenKind::instructions, .text = instructions});
+void BrowserParticipant::read(const std::string& instructions,
+                              const std::optional<protocols::Picture>& picture) {
+  answer_to({.kind = ScreenKind::instructions, .text = instructions, .picture = picture});
 }
 
 void BrowserParticipant::practice_is_over() {

@@ -19,7 +19,8 @@ class BrowserParticipant final : public Participant {
   };
   BrowserParticipant(ScreenExchange& screens, Context context)
       : screens_{screens}, context_{std::move(context)} {}
-  void read(const std::string& instructions) override;
+  void read(const std::string& instructions,
+            const std::optional<protocols::Picture>& picture) override;
   void practice_is_over() override;
   void rest(const protocols::Breaks& breaks) override;
   bool fills_in_forms() const override { return true; }

@@ -73,7 +73,7 @@ std::string header(mg_connection* connection, const char* name) {
 
 constexpr const char* common_headers =
     "Cache-Control: no-store\r\n"
-    "Content-Security-Policy: default-src 'self'; frame-ancestors 'none'\r\n"
+    "Content-Security-Policy: default-src 'self'; img-src 'self' data:; frame-ancestors 'none'\r\n"
     "X-Content-Type-Options: nosniff\r\n"
     "Referrer-Policy: no-referrer\r\n"
     "Cross-Origin-Resource-Policy: same-origin\r\n";

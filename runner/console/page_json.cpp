@@ -21,6 +21,15 @@ const char* name(protocols::AnswerKind value) {
 }
 }  // namespace
 
+Json progress_json(const TrialProgress& progress) {
+  return {{"done", progress.done},
+          {"total", progress.total},
+          {"is_practice", progress.is_practice},
+          {"is_open_ended", progress.is_open_ended},
+          {"elapsed_s", progress.elapsed_s},
+          {"left_s", progress.left_s ? Json(*progress.left_s) : Json{}}};
+}
+
 Json answers_json(const protocols::Answers& answers) {
   Json labels = Json::array();
   for (const protocols::Option& option : answers.options) {

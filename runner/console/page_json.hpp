@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "protocols/tasks/answers.hpp"
+#include "runner/session/participants/participant.hpp"
 namespace tapstudy::runner {
 using Json = nlohmann::ordered_json;
 
@@ -23,6 +24,8 @@ inline Json parse_json(const std::string& text) {
   }
 }
 
-// {"kind", "options": [label], "settings", "modulus"}, for both pages.
+// Both for both pages.
+Json progress_json(const TrialProgress& progress);
+// {"kind", "options": [label], "settings", "modulus"}
 Json answers_json(const protocols::Answers& answers);
 }  // namespace tapstudy::runner

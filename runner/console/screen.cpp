@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/files/data_url.hpp"
 #include "runner/console/page_json.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -43,10 +44,17 @@ Json json_of(const protocols::Confidence& scale) {
 Json json_of(const FeedbackScreen& feedback) {
   return {{"is_correct", feedback.is_correct}, {"right", feedback.right}};
 }
+Json picture_json(const std::optional<protocols::Picture>& picture) {
+  return picture ? Json{{"url", core::data_url(picture->media_type, *picture->bytes)},
+                        {"text", picture->text}}
+                 : Json{};
+}
 Json options_of(const std::vector<protocols::Option>& options) {
   Json all = Json::array();
   for (const protocols::Option& option : options) {
-    all.push_back({{"name", option.name}, {"label", option.label}});
+    all.push_back({{"name", option.name},
+                   {"label", option.label},
+                   {"picture", picture_json(option.picture)}});
   }
   return all;
 }
@@ -55,6 +63,7 @@ Json json_of(const protocols::FormItem& item, const std::string& form) {
   Json json{{"name", item.name},
             {"kind", name(item.kind)},
             {"question", item.question},
+            {"picture", picture_json(item.picture)},
             {"is_required", item.is_required},
             {"steps", item.steps},
             {"low", item.low},
@@ -74,13 +83,10 @@ Json json_of(const protocols::Form& form) {
   for (const protocols::FormItem& item : form.items) {
     items.push_back(json_of(item, form.name));
   }
-  return {{"title", form.title}, {"text", form.text}, {"items", items}};
-}
-Json json_of(const TrialProgress& progress) {
-  return {{"done", progress.done},
-          {"total", progress.total},
-          {"is_practice", progress.is_practice},
-          {"is_open_ended", progress.is_open_ended}};
+  return {{"title", form.title},
+          {"text", form.text},
+          {"picture", picture_json(form.picture)},
+          {"items", items}};
 }
 Json json_of(int scene) {
   return scene;
@@ -206,8 +212,9 @@ std::string to_json(const Screen& screen, const ScreenContext& context) {
                   {"language", context.language},
                   {"kind", name(screen.kind)},
                   {"title", context.title},
-                  {"progress", or_null(screen.progress)},
+                  {"progress", screen.progress ? progress_json(*screen.progress) : Json{}},
                   {"text", screen.text},
+                  {"picture", picture_json(screen.picture)},
                   {"message", name(screen.message)},
                   {"min_seconds", screen.min_seconds},
                   {"max_seconds", screen.max_seconds ? Json(*screen.max_seconds) : Json{}},

@@ -51,6 +51,7 @@ struct FeedbackScreen {
 struct Screen {
   ScreenKind kind{ScreenKind::wait};
   std::string text{};
+  std::optional<protocols::Picture> picture{};  // beside the text
   Message message{Message::none};
   double min_seconds{};                 // of a rest
   std::optional<double> max_seconds{};  // likewise; unset: it does not end by itself

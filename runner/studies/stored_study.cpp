@@ -12,6 +12,7 @@
 #include "results/store/program_versions.hpp"
 #include "results/store/study_queries.hpp"
 #include "runner/session/engine/between_trials.hpp"
+#include "runner/session/engine/session_row.hpp"
 #include "runner/session/engine/stored_names.hpp"
 namespace tapstudy::runner {
 bool is_before(const std::string& version, int major, int minor) {
@@ -46,13 +47,7 @@ protocols::EarlierDefaults defaults_of(results::Store& store) {
 
 protocols::Protocol stored_protocol(results::Store& store) {
   const results::StudyRow study = store.study();
-  const protocols::ReadFile stored = [&](const std::string& file) {
-    const auto found = std::ranges::find(study.surfaces, file, &results::SurfaceRow::file);
-    if (found == study.surfaces.end()) {
-      throw core::InvalidInput{file + ": is not stored with the study"};
-    }
-    return found->bytes;
-  };
+  const protocols::ReadFile stored = files_of(study);
   return protocols::parse_protocol({study.protocol_text, study.protocol_file}, {stored, stored},
                                    defaults_of(store));
 }

@@ -484,7 +484,7 @@ TEST_CASE("a report needs the study's directory alone, and no session goes on wi
       testing::tapstudy({"run", study, "--participant", "P01", "--out", out}, "= a\n");
   CHECK(changed_body.exit_code == 2);
   CHECK_THAT(changed_body.standard_error,
-             Contains("'body.off' is not the surface that the study began with"));
+             Contains("'body.off' is not the file that the study began with"));
   std::filesystem::remove(directory / "body.off");
   std::filesystem::remove(study);
   const auto report = testing::tapstudy({"report", out});

@@ -486,13 +486,16 @@ std::string screened_study(const TempDirectory& directory) {
       text, "forms:\n",
       "forms:\n  consent:\n    title: Consent\n    items:\n"
       "      - {name: agree, kind: single_choice, question: \"Do you take part?\", "
-      "options: [agreed, declined], ends_session: [declined]}\n"
+      "options: [agreed, declined], ends_session: [declined], "
+      "picture: {file: plates.svg, text: Two plates to tap}}\n"
       "      - {name: email, kind: text, question: \"Your address?\", required: false}\n");
   text = testing::replaced(text, "forms_before: [about]", "forms_before: [consent, about]");
   text = testing::replaced(text, "    instructions: Now",
                            "    presented_if: {form: about, item: hand, is: [left]}\n"
                            "    instructions: Now");
   testing::write(file, text);
+  testing::write(directory / "plates.svg",
+                 testing::contents(testing::source("tests/data/plates.svg")));
   return file;
 }
 }  // namespace
@@ -512,6 +515,7 @@ TEST_CASE("who declines is stored as such and nothing else, and leaves the order
   INFO(declined.standard_error);
   CHECK(declined.exit_code == 0);
   CHECK_THAT(declined.standard_output, Contains("takes no part: answered declined to 'agree'"));
+  CHECK_THAT(declined.standard_output, Contains("[picture: Two plates to tap]\n"));
   CHECK(sql(directory, "SELECT item, answer FROM form_answer") == "agree|declined\n");
   CHECK(sql(directory, "SELECT count(*) FROM trial") == "0\n");
   CHECK(sql(directory, "SELECT state, detail FROM session_event ORDER BY rowid DESC LIMIT 1") ==
@@ -519,6 +523,12 @@ TEST_CASE("who declines is stored as such and nothing else, and leaves the order
   const auto resumed = run("P01", "1\n", {"--resume"});
   CHECK(resumed.exit_code == 2);
   CHECK_THAT(resumed.standard_error, Contains("'P01' takes no part"));
+  // pictures are inputs of the study: it goes on with those that it began with
+  testing::write(directory / "plates.svg", "<svg/>");
+  CHECK_THAT(run("P02", "").standard_error,
+             Contains("'plates.svg' is not the file that the study"));
+  testing::write(directory / "plates.svg",
+                 testing::contents(testing::source("tests/data/plates.svg")));
   // right-handed, a glove among what was held, which is asked then; no trial of `main`
   const auto right = run("P02", "1\n\n\n2\n3, 2\na thick one\n1\n2\n");
   INFO(right.standard_error);

@@ -304,12 +304,39 @@ class EveryTask(WholeSession):
 
 
 class EveryScreen(WholeSession):
+    def with_pictures(self):
+        """every_screen.yaml with a drawing in its instructions, its form and beside a question, and photographs to choose from."""
+        folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, folder)
+        shutil.copy(SOURCE / "tests/data/plates.svg", folder)
+        shutil.copy(SOURCE / "docs/pictures/participant.png", folder / "hand.png")
+        drawing = "{file: plates.svg, text: Two plates}"
+        text = (SOURCE / "tests/data/every_screen.yaml").read_text()
+        for before, after in (
+                ("finger:", f"instructions_picture: {drawing}\nfinger:"),
+                ("needed to take part.\n", f"needed to take part.\n    picture: {drawing}\n"),
+                ("max: 99,", f"max: 99, picture: {drawing},"),
+                ("[left, right],", "[left, right], option_pictures: [{file: hand.png, text: A left hand}, {file: hand.png, text: A right hand}],")):
+            self.assertIn(before, text)
+            text = text.replace(before, after, 1)
+        (folder / "study.yaml").write_text(text)
+        return folder / "study.yaml"
+
+    def check_pictures(self, *texts):
+        """These are on the screen, as their text says, and none is broken or from elsewhere."""
+        pictures = browser.wait_until(self.driver, "pictures", lambda: self.driver.execute_script("""
+            const all = [...document.querySelectorAll("img")];
+            return all.every((one) => one.complete) && all.map((one) => [one.alt, one.src.slice(0, 11), one.naturalWidth > 0, one.clientWidth > 40])"""))
+        self.assertEqual(pictures, [[text, "data:image/", True, True] for text in texts])
+
     def test_every_screen_in_its_order(self):
-        self.start("tests/data/every_screen.yaml", is_dark=True)
+        self.start(self.with_pictures(), is_dark=True)
         browser.wait_for_screen(self.driver, "instructions")
+        self.check_pictures("Two plates")
         self.check_screen("instructions")
         browser.go_on_by_mouse(self.driver)
         browser.wait_for_screen(self.driver, "form")
+        self.check_pictures("Two plates", "Two plates", "A left hand", "A right hand")
         browser.fill_in_by_mouse(self.driver, "hand", "right")
         browser.fill_in_by_mouse(self.driver, "age", "29,5")  # as where numbers have decimal commas
         glove = browser.find(self.driver, '.item[data-name="glove"]')
@@ -335,6 +362,7 @@ class EveryScreen(WholeSession):
                 browser.go_on_by_mouse(self.driver)
             browser.wait_for_screen(self.driver, "trial")
             self.assertRegex(browser.find(self.driver, "[role=timer]").text, "^([1-4]?[0-9]|50) s left to answer$")
+            self.assertRegex(browser.find(self.driver, "#time-text").text, ["^0 min so far$", "^0 min so far, about 1 min left$"][trial])
             self.answer_until_accepted(browser.answer_by_mouse, trial)
             browser.wait_for_screen(self.driver, "confidence")
             browser.answer_by_mouse(self.driver, 2)

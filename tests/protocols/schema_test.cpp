@@ -119,6 +119,8 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema]") 
       {"max_triangles: 1000", "max_triangles: 3"},
       {"wrap_m: 0.01, ", ""},
       {"modal_ratios: [0.02, 0.01]", "modal_ratios: []"},
+      {"{file: plates.svg, text: The plates}", "{file: plates.svg}"},
+      {"{file: plates.svg, text: The plates}", "plates.svg"},
       {"modal_ratios: [0.02, 0.01], further", "further"},
       {"values: [600, 700, 800]", "values: []"},
       {"axis: density_kg_per_m3, values: [600, 700, 800], ", ""},

@@ -7,8 +7,6 @@ namespace tapstudy::analysis {
 std::string pdf_of_svg(const std::string& svg);
 // The same as a PNG, so many pixels wide, 8 bits a colour, what is empty black. Throws likewise.
 std::string png_of_svg(const std::string& svg, int width);
-// "data:image/png;base64,…", to be embedded in a page.
-std::string png_data_uri(const std::string& png);
 
 // PNG files of one size and format as an animation (PNG, third edition, W3C 2025: chunks acTL,
 // fcTL, fdAT), each shown for so many milliseconds, over and over. What reads no animations shows

@@ -86,11 +86,4 @@ std::string png_of_svg(const std::string& svg, int width) {
   }
   return png;
 }
-
-std::string png_data_uri(const std::string& png) {
-  const std::vector<guchar> bytes(png.begin(), png.end());
-  const std::unique_ptr<gchar, decltype(&g_free)> encoded{
-      g_base64_encode(bytes.data(), bytes.size()), &g_free};
-  return std::string{"data:image/png;base64,"} + encoded.get();
-}
 }  // namespace tapstudy::analysis

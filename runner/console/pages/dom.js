@@ -17,6 +17,10 @@ export function svg(name, attributes = {}) {
   return element;
 }
 
+// {url, text}, or null.
+export const pictureOf = (picture) =>
+  (picture ? el("img", { className: "picture", src: picture.url, alt: picture.text }) : null);
+
 export const byId = (id) => document.getElementById(id);
 
 export function setText(element, text) {

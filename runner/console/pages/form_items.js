@@ -2,7 +2,7 @@
 // the words for what is wrong with it or null.
 
 import { analogueScale } from "./analogue_scale.js";
-import { el } from "./dom.js";
+import { el, pictureOf } from "./dom.js";
 import { checkCard, newGroupName, pickedValue, radioCard, steps } from "./radio_cards.js";
 import { typedNumber } from "./typed_number.js";
 import { word } from "./words.js";
@@ -22,7 +22,7 @@ const likert = (item) => radios(steps({ count: item.steps, low: item.low, high: 
 
 function singleChoice(item) {
   const group = newGroupName();
-  const cards = item.options.map(({ label }, index) => radioCard({ group, value: index, label }));
+  const cards = item.options.map(({ label, picture }, index) => radioCard({ group, value: index, label, picture }));
   return radios(el("div", { className: "options" }, ...cards), (index) => item.options[Number(index)].name);
 }
 
@@ -30,7 +30,7 @@ function singleChoice(item) {
 const betweenChoices = ";";
 
 function multipleChoice(item) {
-  const cards = item.options.map(({ label }, index) => checkCard({ value: index, label }));
+  const cards = item.options.map(({ label, picture }, index) => checkCard({ value: index, label, picture }));
   const body = el("div", { className: "options" }, ...cards);
   const chosen = () => [...body.querySelectorAll("input:checked")].map(({ value }) => item.options[Number(value)].name);
   return { body, value: () => (chosen().length === 0 ? null : chosen().join(betweenChoices)) };
@@ -103,7 +103,7 @@ export function formItem(item, id) {
   const field = makers[item.kind](item, id);
   const error = el("p", { className: "error", id: `${id}-error` });
   const element = el(areLabelled.has(item.kind) ? "div" : "fieldset", { className: `item ${item.kind}` },
-    titleOf(item, id), field.body, error, clearButton(item, field));
+    titleOf(item, id), pictureOf(item.picture), field.body, error, clearButton(item, field));
   element.dataset.name = item.name;
   const inputs = element.querySelectorAll("input, textarea");
   inputs.forEach((input) => input.setAttribute("aria-describedby", error.id));

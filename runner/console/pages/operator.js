@@ -5,7 +5,7 @@ import { byId, el, onThemeChange, setText, showIfChanged } from "./dom.js";
 import { Actions } from "./operator_actions.js";
 import { showLastAnswer, showLog, showMachine, showTrial } from "./operator_parts.js";
 import { LivePlots } from "./operator_plots.js";
-import { loadWords, word, wordOr } from "./words.js";
+import { loadWords, timeIn, word, wordOr } from "./words.js";
 
 let state = null;
 let actions = null;
@@ -16,7 +16,7 @@ function showSession({ study, participant, mode, is_blind: isBlind, progress }) 
   document.title = `${study} – ${word("operator")}`;
   const parts = [word("session_line", { participant, mode: wordOr(`mode_${mode}`, mode) })];
   if (isBlind) parts.push(word("blind"));
-  if (progress) parts.push(word("done", progress));
+  if (progress) parts.push(word("done", progress), timeIn(progress));
   setText(byId("session"), parts.join(" · "));
 }
 

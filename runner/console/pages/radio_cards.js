@@ -1,16 +1,16 @@
 // Answers to pick from: radio buttons, or boxes to check, that look like cards.
 
-import { el } from "./dom.js";
+import { el, pictureOf } from "./dom.js";
 
 let groups = 0;
 
 export const newGroupName = () => `group-${(groups += 1)}`;
 
 // key: the key that picks it, shown beside the label.
-function card({ type, group, value, label, key, spokenLabel }) {
+function card({ type, group, value, label, picture, key, spokenLabel }) {
   const input = el("input", { type, name: group, value: String(value), "aria-label": spokenLabel });
   const hint = key ? el("kbd", { "aria-hidden": "true" }, key) : null;
-  return el("label", { className: "option" }, input, el("span", { className: "face" }, hint, el("span", {}, label)));
+  return el("label", { className: "option" }, input, el("span", { className: "face" }, hint, pictureOf(picture), el("span", {}, label)));
 }
 
 export const radioCard = (parts) => card({ type: "radio", ...parts });

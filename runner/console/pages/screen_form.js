@@ -1,7 +1,7 @@
 // A questionnaire. What was typed stays while the form is on the screen, also when the language
 // changes and changes back; a form that is asked again is empty.
 
-import { el } from "./dom.js";
+import { el, pictureOf } from "./dom.js";
 import { formItem } from "./form_items.js";
 import { markedText } from "./marked_text.js";
 import { word } from "./words.js";
@@ -35,7 +35,7 @@ function build({ form }) {
   const element = el("form", { className: "form", noValidate: true, autocomplete: "off" },
     el("h1", { tabIndex: -1 }, form.title || title || word("form")),
     form.title && title ? el("h2", {}, title) : null,
-    ...body, ...items.map((item) => item.element), send);
+    ...body, pictureOf(form.picture), ...items.map((item) => item.element), send);
   // Enter in a field must not send a form that is half filled in.
   element.addEventListener("keydown", (event) => {
     if (event.key === "Enter" && event.target.matches("input")) event.preventDefault();

@@ -1,7 +1,7 @@
 // Screens that are read, not answered: instructions, messages, rests, and what happens between.
 
 import { countdown } from "./countdown.js";
-import { el } from "./dom.js";
+import { el, pictureOf } from "./dom.js";
 import { markedText } from "./marked_text.js";
 import { word } from "./words.js";
 
@@ -41,7 +41,7 @@ export function textScreen(screen, { send }) {
     : null;
   const mark = screen.feedback ? (screen.feedback.is_correct ? " is-correct" : " is-wrong") : "";
   const element = el("article", { className: `text ${screen.kind}${mark}` },
-    el("h1", { tabIndex: -1 }, title), ...body, goOn);
+    el("h1", { tabIndex: -1 }, title), ...body, pictureOf(screen.picture), goOn);
   return {
     element,
     goOn,

@@ -23,5 +23,11 @@ export function word(key, values = {}) {
   return text.replace(/\{(\w+)\}/g, (whole, name) => values[name] ?? whole);
 }
 
+// How long the session has taken and will take, in minutes.
+export function timeIn({ elapsed_s: elapsed, left_s: left }) {
+  const minutes = Math.floor(elapsed / 60);
+  return left === null ? word("time_so_far", { minutes }) : word("time_and_left", { minutes, left: Math.ceil(left / 60) });
+}
+
 // For names that come from the program and may be newer than these pages.
 export const wordOr = (key, otherwise) => words[key] ?? otherwise;

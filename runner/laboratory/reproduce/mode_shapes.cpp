@@ -11,6 +11,7 @@
 #include "analysis/report/document/formats.hpp"
 #include "analysis/report/figures/colour_map.hpp"
 #include "analysis/report/figures/image_formats.hpp"
+#include "core/files/data_url.hpp"
 #include "runner/laboratory/reproduce/claims.hpp"
 #include "runner/laboratory/reproduce/paper_protocols.hpp"
 namespace tapstudy::runner {
@@ -65,7 +66,7 @@ std::vector<std::string> pictures(const analysis::ColourMap& map) {
   std::vector<std::string> uris;
   for (const std::string& svg : colour_svgs(map)) {
     uris.push_back(
-        analysis::png_data_uri(analysis::png_of_svg(svg, static_cast<int>(map.columns))));
+        core::data_url("image/png", analysis::png_of_svg(svg, static_cast<int>(map.columns))));
   }
   return uris;
 }

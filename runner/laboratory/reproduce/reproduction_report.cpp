@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "analysis/report/document/formats.hpp"
-#include "analysis/report/figures/image_formats.hpp"
 #include "core/error.hpp"
+#include "core/files/data_url.hpp"
 #include "core/files/output_files.hpp"
 #include "core/text/print.hpp"
 #include "runner/laboratory/reproduce/claims.hpp"
@@ -110,7 +110,7 @@ void write_claim(std::ostream& out, const Claim& claim) {
     core::print(out,
                 "<figure class=animation><img src=\"{}\" alt=\"{}\"><figcaption>{} ({})"
                 "</figcaption></figure>\n",
-                analysis::png_data_uri(animation.png), escaped(animation.title),
+                core::data_url("image/png", animation.png), escaped(animation.title),
                 escaped(animation.title), escaped(animation.file));
   }
   out << "</section>\n";

@@ -60,7 +60,8 @@ bool is_end_of_practice_said(const protocols::Block& before, const protocols::Bl
 void BetweenTrials::begin(bool has_trials) {
   if (!has_begun_) {
     has_begun_ = true;
-    read(has_trials ? parts_.protocol.instructions : "", "study");
+    read(has_trials ? parts_.protocol.instructions : "", parts_.protocol.instructions_picture,
+         "study");
     ask(parts_.protocol.forms_before, asked_at_begin);
   }
 }
@@ -91,7 +92,7 @@ void BetweenTrials::before(const protocols::PlannedTrial& trial,
 }
 
 void BetweenTrials::introduce(const protocols::Block& block) {
-  read(block.instructions, block.name);
+  read(block.instructions, block.instructions_picture, block.name);
   if (block_ && is_end_of_practice_said(parts_.protocol.block(*block_), block)) {
     parts_.wait_while_paused();
     parts_.states.enter(SessionState::instructions, {}, block.name);
@@ -118,11 +119,12 @@ void BetweenTrials::after_last_trial(const protocols::Schedule& presented) {
   }
 }
 
-void BetweenTrials::read(const std::string& text, const std::string& whose) {
+void BetweenTrials::read(const std::string& text, const std::optional<protocols::Picture>& picture,
+                         const std::string& whose) {
   if (!text.empty()) {
     parts_.wait_while_paused();
     parts_.states.enter(SessionState::instructions, {}, whose);
-    parts_.participant.read(text);
+    parts_.participant.read(text, picture);
   }
 }
 

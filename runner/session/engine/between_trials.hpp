@@ -64,7 +64,8 @@ class BetweenTrials {
   // nullopt: after all blocks.
   void ask_after_blocks(const protocols::Schedule& presented,
                         const std::optional<std::string>& up_to);
-  void read(const std::string& text, const std::string& whose);
+  void read(const std::string& text, const std::optional<protocols::Picture>& picture,
+            const std::string& whose);
   void introduce(const protocols::Block& block);
   void rest_if_due(const protocols::Block& block);
   // Of these forms what is asked now and was not asked here before.

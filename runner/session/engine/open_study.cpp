@@ -17,17 +17,9 @@ using protocols::ChangedText;
 using protocols::ChangesOfFile;
 using protocols::Protocol;
 namespace {
-// A text of the same study, with the surfaces that the study has.
-template <class Surfaces>
-Protocol parsed(const std::string& text, const Surfaces& surfaces) {
-  const protocols::ReadFile stored = [&](const std::string& file) {
-    for (const auto& surface : surfaces) {
-      if (surface.file == file) {
-        return surface.bytes;
-      }
-    }
-    throw core::InvalidInput{file + ": is not stored with the study"};
-  };
+// A text of the same study, with the files that the study has.
+Protocol parsed(const std::string& text, const results::StudyRow& study) {
+  const protocols::ReadFile stored = files_of(study);
   return protocols::parse_protocol({text, "the study's protocol"}, {stored, stored}, {});
 }
 
@@ -67,7 +59,7 @@ void say_what_changed(const std::vector<ChangedText>& texts) {
 }  // namespace
 
 ChangesOfFile changes_in(const Protocol& of_study, const std::string& later_text) {
-  return changes(of_study, parsed(later_text, of_study.surfaces));
+  return changes(of_study, parsed(later_text, study_row(of_study, "")));
 }
 
 std::string described(const ChangedText& text) {
@@ -78,13 +70,12 @@ std::string described(const ChangedText& text) {
 results::Store open_study(const std::string& directory, const Protocol& protocol,
                           const std::string& protocol_file) {
   const auto accept = [&](const results::StudyRow& stored, const std::string& latest_text) {
-    const ChangesOfFile since_begin =
-        changes(parsed(stored.protocol_text, stored.surfaces), protocol);
+    const ChangesOfFile since_begin = changes(parsed(stored.protocol_text, stored), protocol);
     if (!since_begin.data_keys.empty()) {
       refuse_other_data(since_begin.data_keys, directory, stored);
     }
     if (latest_text != protocol.text) {
-      say_what_changed(changes(parsed(latest_text, stored.surfaces), protocol).texts);
+      say_what_changed(changes(parsed(latest_text, stored), protocol).texts);
     }
   };
   return results::Store::open_or_create(directory, study_row(protocol, protocol_file), accept);

@@ -103,4 +103,21 @@ TrialProgress progress_at(const protocols::PlannedTrial& trial, const protocols:
   }
   return progress;
 }
+
+std::optional<double> time_left_s(const protocols::Schedule& schedule, const std::set<int>& done,
+                                  const protocols::Protocol& protocol, double presented_in_s,
+                                  int presented) {
+  constexpr int fewest = 3;
+  const auto is_waiting = [&](const protocols::PlannedTrial& trial) {
+    return !done.contains(trial.number);
+  };
+  const bool may_end_early = std::ranges::any_of(schedule, [&](const auto& trial) {
+    return is_waiting(trial) && protocols::may_end_early(protocol.block(trial.block));
+  });
+  if (presented < fewest || may_end_early) {
+    return std::nullopt;
+  }
+  return presented_in_s / presented *
+         static_cast<double>(std::ranges::count_if(schedule, is_waiting));
+}
 }  // namespace tapstudy::runner

@@ -44,4 +44,9 @@ std::deque<protocols::PlannedTrial> waiting_trials(const protocols::Schedule& sc
 // `done` are the numbers of those that need not come again.
 TrialProgress progress_at(const protocols::PlannedTrial& trial, const protocols::Schedule& schedule,
                           const std::set<int>& done, const protocols::Protocol& protocol);
+// How long the trials that are not done take, at the pace of those that a session has presented in
+// so many seconds. Unset before the third, and where procedures may need fewer.
+std::optional<double> time_left_s(const protocols::Schedule& schedule, const std::set<int>& done,
+                                  const protocols::Protocol& protocol, double presented_in_s,
+                                  int presented);
 }  // namespace tapstudy::runner

@@ -23,7 +23,20 @@ results::StudyRow study_row(const protocols::Protocol& protocol, const std::stri
   for (const protocols::SurfaceSource& surface : protocol.surfaces) {
     study.surfaces.push_back({surface.file, surface.sha256, surface.bytes});
   }
+  for (const protocols::Picture& picture : protocol.pictures) {
+    study.surfaces.push_back({picture.file, core::sha256(*picture.bytes), *picture.bytes});
+  }
   return study;
+}
+
+protocols::ReadFile files_of(const results::StudyRow& study) {
+  return [&](const std::string& file) {
+    const auto found = std::ranges::find(study.surfaces, file, &results::SurfaceRow::file);
+    if (found == study.surfaces.end()) {
+      throw core::InvalidInput{file + ": is not stored with the study"};
+    }
+    return found->bytes;
+  };
 }
 
 results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,

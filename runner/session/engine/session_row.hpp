@@ -11,6 +11,8 @@
 namespace tapstudy::runner {
 // The study's own row, from the protocol's file and the files that it names.
 results::StudyRow study_row(const protocols::Protocol& protocol, const std::string& file);
+// These files; the row has to live as long. Throws InvalidInput for others.
+protocols::ReadFile files_of(const results::StudyRow& study);
 
 // The session data known before the first trial.
 struct SessionPlan {

@@ -97,9 +97,13 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
 
 TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, const Course& course) const {
   const protocols::Block& block = parts_.protocol.block(trial.block);
+  TrialProgress progress = progress_at(trial, course.schedule, course.done, parts_.protocol);
+  progress.elapsed_s = parts_.states.now_s();
+  progress.left_s = time_left_s(course.schedule, course.done, parts_.protocol,
+                                progress.elapsed_s - first_trial_at_s_, trials_);
   return {trial.number,
           course.schedule.back().number,
-          progress_at(trial, course.schedule, course.done, parts_.protocol),
+          progress,
           &block,
           protocols::answers_of(block, parts_.protocol),
           trial.task->alternative_labels(trial),
@@ -250,6 +254,7 @@ void TrialEngine::note_answer(const PlannedTrial& trial, const TrialPrompt& prom
 
 TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, const Course& course) {
   const PlannedTrial trial = adaptive_->with_values(planned);
+  first_trial_at_s_ = trials_ == 0 ? parts_.states.now_s() : first_trial_at_s_;
   const TrialPrompt prompt = prompt_of(trial, course);
   const protocols::Block& block = parts_.protocol.block(trial.block);
   Presentation presentation = present({trial, prompt, attempts_[trial.number] + 1}, parts_);

@@ -91,6 +91,7 @@ class TrialEngine {
   std::map<int, int> repeats_after_late_impacts_;
   std::int64_t ticks_{0};
   int trials_{0};
+  double first_trial_at_s_{0.0};
   bool has_warned_{false};
 };
 }  // namespace tapstudy::runner

@@ -16,7 +16,9 @@ struct TrialProgress {
   int done{};  // and need not come again
   int total{};
   bool is_practice{};
-  bool is_open_ended{};  // total is the most there can be: procedures may end before
+  bool is_open_ended{};            // total is the most there can be: procedures may end before
+  double elapsed_s{};              // of the session
+  std::optional<double> left_s{};  // of all its trials, at the pace so far; unset: not known
 };
 
 // Of the trial that is presented: "3 of 8", or "3" where nobody knows of how many.
@@ -73,7 +75,8 @@ class Participant {
  public:
   virtual ~Participant() = default;
   // Between trials; each returns once the participant goes on, and throws Stopped where none does.
-  virtual void read(const std::string& /*instructions*/) {}
+  virtual void read(const std::string& /*instructions*/,
+                    const std::optional<protocols::Picture>& /*picture*/) {}
   virtual void practice_is_over() {}
   virtual void rest(const protocols::Breaks& /*breaks*/) {}
   // A simulation has nothing to say about itself.

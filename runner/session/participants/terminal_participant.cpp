@@ -18,6 +18,11 @@ namespace {
 constexpr std::string_view kept_for_resume =
     "every answer given so far is kept (go on with --resume)";
 
+// "[picture: two plates side by side]", instead of the picture.
+std::string shown(const std::optional<protocols::Picture>& picture) {
+  return picture ? fmt::format("[picture: {}]", picture->text) : "";
+}
+
 std::optional<std::size_t> number_in(const std::string& word, std::size_t most) {
   const auto number = whole_number(word, 1, static_cast<int>(most));
   return number ? std::optional{static_cast<std::size_t>(*number - 1)} : std::nullopt;
@@ -82,9 +87,11 @@ void TerminalParticipant::wait_while(const std::function<bool()>& is_paused) {
   }
 }
 
-void TerminalParticipant::read(const std::string& instructions) {
+void TerminalParticipant::read(const std::string& instructions,
+                               const std::optional<protocols::Picture>& picture) {
   const std::string text = instructions.substr(0, instructions.find_last_not_of('\n') + 1);
   say("\n{}\n", marked_text(text, is_shown_by_terminal()));
+  say_picture(picture);
   wait_for_enter();
 }
 
@@ -249,10 +256,16 @@ constexpr std::string_view without_this_form =
     "every answer given before this form is kept; --resume begins the form again";
 }  // namespace
 
+void TerminalParticipant::say_picture(const std::optional<protocols::Picture>& picture) {
+  say("{}{}", shown(picture), picture ? "\n" : "");
+}
+
 std::string TerminalParticipant::answer_to(const protocols::FormItem& item) {
   say("\n{}\n", item.question);
+  say_picture(item.picture);
   for (std::size_t i = 0; i < item.options.size(); ++i) {
-    say("  {}  {}\n", i + 1, item.options[i].label);
+    const std::string picture = shown(item.options[i].picture);
+    say("  {}  {}{}{}\n", i + 1, item.options[i].label, picture.empty() ? "" : "  ", picture);
   }
   while (true) {
     say("  {}{}: ", input_hint(item), item.is_required ? "" : "; Enter leaves it out");
@@ -277,6 +290,7 @@ protocols::FormAnswers TerminalParticipant::fill_in(const protocols::Form& form)
     stop_if_asked(without_this_form);
   }
   say("\n{}\n{}\n", form.title, marked_text(form.text, is_shown_by_terminal()));
+  say_picture(form.picture);
   protocols::FormAnswers answers;
   for (const protocols::FormItem& item : form.items) {
     const auto asked = asked_items(form, answers);  // so far

@@ -18,7 +18,8 @@ class TerminalParticipant final : public Participant {
   // device for the person to hold.
   TerminalParticipant(LineInput& input, TypedCommands& commands, std::function<void()> move_hand)
       : input_{input}, commands_{commands}, move_hand_{std::move(move_hand)} {}
-  void read(const std::string& instructions) override;
+  void read(const std::string& instructions,
+            const std::optional<protocols::Picture>& picture) override;
   void practice_is_over() override;
   void rest(const protocols::Breaks& breaks) override;
   bool fills_in_forms() const override { return true; }
@@ -39,6 +40,7 @@ class TerminalParticipant final : public Participant {
   void wait_until(std::chrono::steady_clock::time_point earliest);
   void wait_for_enter(
       std::chrono::steady_clock::time_point latest = std::chrono::steady_clock::time_point::max());
+  void say_picture(const std::optional<protocols::Picture>& picture);
   std::string answer_to(const protocols::FormItem& item);
   // The participant's next line; the operator's are obeyed.
   std::optional<std::string> next_of_participant(const std::function<bool()>& keep_waiting);
@@ -63,5 +65,6 @@ class TerminalParticipant final : public Participant {
   TypedCommands& commands_;
   std::function<void()> move_hand_;
   std::optional<TypedIntervals> intervals_;  // of the trial
+  std::optional<TypedCountdown> countdown_;  // likewise
 };
 }  // namespace tapstudy::runner

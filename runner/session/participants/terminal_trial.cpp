@@ -165,6 +165,17 @@ std::string interval_instructions(const TrialPrompt& prompt) {
       intervals->max_replays > 0 ? "   again: all of them once more." : "");
 }
 
+std::optional<int> TypedCountdown::due(double time_s) {
+  for (const int seconds : {5, 10, 30}) {
+    if (limit_s_ && seconds < *limit_s_ && *limit_s_ - time_s <= seconds) {
+      const bool is_said = said_ && *said_ <= seconds;
+      said_ = is_said ? said_ : seconds;
+      return is_said ? std::nullopt : said_;
+    }
+  }
+  return std::nullopt;
+}
+
 bool replays(const std::string& line, TrialControl& control) {
   const IntervalState* const state = control.intervals();
   if (state == nullptr || upper_case_without_spaces(line) != "AGAIN") {
@@ -241,6 +252,7 @@ void TerminalParticipant::get_ready(const TrialPrompt& prompt) {
     say("  hold the device still: the plate is tapped for you\n");
   }
   intervals_.emplace(prompt);
+  countdown_.emplace(prompt.block->explore.max_seconds);
   if (!prompt.alternative_labels.empty()) {
     const std::string intervals = interval_instructions(prompt);
     say("{}{}\n",
@@ -260,6 +272,9 @@ std::optional<std::string> TerminalParticipant::next_line(const TrialPrompt& pro
     say("> ");
     const auto line = next_of_participant([&] {
       intervals_->announce(control);
+      if (const auto seconds = countdown_->due(control.time_s())) {
+        say("\n  {} s left to answer\n> ", *seconds);
+      }
       return control.poll();
     });
     if (!line || asks_to_quit(*line)) {

@@ -36,6 +36,18 @@ class TypedIntervals {
   std::optional<IntervalState> told_;
 };
 
+// How long is left to answer, as a person at the terminal is told of it.
+class TypedCountdown {
+ public:
+  explicit TypedCountdown(std::optional<double> limit_s) : limit_s_{limit_s} {}
+  // The seconds that are to be said now: 30, 10 and 5, each once.
+  std::optional<int> due(double time_s);
+
+ private:
+  std::optional<double> limit_s_;
+  std::optional<int> said_;
+};
+
 // Empty: the alternatives do not come one after the other.
 std::string interval_instructions(const TrialPrompt& prompt);
 // Whether the line was "again", and is dealt with.

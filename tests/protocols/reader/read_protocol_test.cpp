@@ -302,6 +302,8 @@ TEST_CASE("an interaction and an equivalence are refused where nothing could be 
              Contains("hypotheses[0].factors: an interaction is of two factors"));
   CHECK_THAT(with_claim("equivalent\n    stimulus: mdf_two\n    to: mdf_two\n    within: 0.1"),
              Contains("hypotheses[0].to: is the stimulus itself"));
+  CHECK_THAT(with_claim("threshold_below\n    below: 0.1"),
+             Contains("hypotheses[0].block: has no threshold"));
   CHECK_THAT(with_claim("equivalent\n    to_block: nowhere\n    within: 0.1"),
              Contains("hypotheses[0].to_block: 'nowhere'"));
   const std::string block = text.substr(text.find("stimuli: [acrylic_two"));
@@ -355,6 +357,25 @@ TEST_CASE("the text that is stored is the file's, and surfaces are beside it who
   CHECK(protocol.surfaces.front().file == "tetrahedron.off");
   CHECK(protocol.surfaces.front().bytes ==
         testing::contents(testing::source("tests/data/tetrahedron.off")));
+  REQUIRE(protocol.pictures.size() == 1);  // shown in six places
+  CHECK(*protocol.pictures.front().bytes ==
+        testing::contents(testing::source("tests/data/plates.svg")));
+}
+
+TEST_CASE("a picture that is refused is one error at its file's key", "[protocols][forms]") {
+  const auto [from, to, said] = GENERATE(table<std::string, std::string, std::string>({
+      {"picture: {file: plates.svg, text: The plates}",
+       "picture: {file: gone.svg, text: The plates}", "forms.about.picture.file: "},
+      {"picture: {file: plates.svg, text: The plates}",
+       "picture: {file: every_key.yaml, text: The plates}", "it holds none of these"},
+      {", {file: plates.svg, text: A right hand}", "", "option_pictures: 1 are given (must be 2"},
+      {"    instructions: First some practice.\n", "", "instructions_picture: stands beside"},
+  }));
+  INFO(from << " → " << to);
+  const std::string file = testing::source("tests/data/every_key.yaml");
+  const std::string text = testing::replaced(testing::contents(file), from, to);
+  CHECK_THROWS_WITH(protocols::parse_protocol(text, file),
+                    Contains(said) && !Contains("\n") && Contains(file + ":"));
 }
 
 TEST_CASE("stimuli of one plate share it, and so do those of one material", "[protocols]") {

@@ -41,6 +41,13 @@ TEST_CASE("a block of several sessions is one of each, called after both", "[pro
   CHECK(protocol.sessions[1].min_since_last_s == 20 * 3600.0);
   CHECK(protocol.sessions[2].min_since_last_s == 6 * 86400.0);
   CHECK(protocol.sessions[2].max_since_last_s == 8 * 86400.0);
+  const auto grouped =
+      testing::with_blocks({"practice", "hard", "soft", "long"},
+                           std::string{three_days} +
+                               "groups:\n  - {name: all, blocks: [practice, hard, soft, long]}\n"
+                               "  - {name: some, blocks: [hard.day_1, soft]}\n");
+  CHECK(grouped.groups[0].blocks == names);
+  CHECK(grouped.groups[1].blocks == Names{"hard.day_1", "soft.day_1", "soft.day_2"});
 }
 
 // Blocks exchange their places within a session only, and there in the rows of a Williams design.

@@ -313,7 +313,10 @@ protocols::Protocol protocol_with(const std::string& repair, const std::string& 
   std::string text = testing::contents(file);
   const auto from = text.find("repair: {");
   text.replace(from, text.find('}', from) + 1 - from, repair);
-  return protocols::parse_protocol({text, file}, [&](const std::string&) { return surface; });
+  return protocols::parse_protocol({text, file}, [&](const std::string& name) {
+    return name.ends_with(".off") ? surface
+                                  : testing::contents(testing::source("tests/data/" + name));
+  });
 }
 const core::TriangleSurface& tetrahedron_of(const protocols::Protocol& protocol) {
   return std::get<core::Solid>(protocol.plates.at("tetrahedron")->shape).surface();

@@ -98,11 +98,11 @@ TEST_CASE("a study goes on with the repair and the surface that it began with on
   testing::write(files.protocol, study_text);
   testing::write(files.directory / "body.off", open_tetrahedron(110));
   CHECK_THROWS_WITH(runner::open_study(files.study, files.read(), files.protocol),
-                    Contains("'body.off' is not the surface that the study began with"));
+                    Contains("'body.off' is not the file that the study began with"));
   // the same file, of which another program or version makes another surface
   testing::write(files.directory / "body.off", open_tetrahedron(100));
   protocols::Protocol otherwise = files.read();
   otherwise.surfaces[1].sha256 = "another";
   CHECK_THROWS_WITH(runner::open_study(files.study, otherwise, files.protocol),
-                    Contains("repaired (") && Contains("is not the surface"));
+                    Contains("repaired (") && Contains("is not the file"));
 }

@@ -275,6 +275,20 @@ TEST_CASE("a session that is resumed presents requeued trials where it would hav
   CHECK(numbers_of(runner::waiting_trials(schedule, {}, {6, 5})) == std::vector{1, 2, 3, 4, 6, 5});
 }
 
+TEST_CASE("what is left takes as long a trial as what was presented, once that is known",
+          "[runner][session]") {
+  protocols::Protocol protocol;
+  for (const char* const name : {"first", "second"}) {
+    protocol.blocks.emplace_back().name = name;
+  }
+  const protocols::Schedule schedule = two_blocks();
+  CHECK_FALSE(runner::time_left_s(schedule, {1, 2}, protocol, 20.0, 2));
+  CHECK(runner::time_left_s(schedule, {1, 2}, protocol, 30.0, 3) == 40.0);
+  protocol.blocks[1].criterion = protocols::PracticeCriterion{1, 1};
+  CHECK_FALSE(runner::time_left_s(schedule, {1, 2}, protocol, 30.0, 3));
+  CHECK(runner::time_left_s(schedule, {1, 2, 3, 4, 5, 6}, protocol, 30.0, 3) == 0.0);
+}
+
 namespace {
 class CountedRests final : public runner::Participant {
  public:
@@ -380,7 +394,9 @@ TEST_CASE("a block's questionnaire that an interruption left open is asked befor
                                        runner::TrialControl& /*control*/) override {
       return std::nullopt;
     }
-    void read(const std::string& text) override { done_.push_back(text); }
+    void read(const std::string& text, const std::optional<protocols::Picture>&) override {
+      done_.push_back(text);
+    }
     bool fills_in_forms() const override { return true; }
     protocols::FormAnswers fill_in(const protocols::Form& form) override {
       done_.push_back(form.title);

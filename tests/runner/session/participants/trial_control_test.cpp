@@ -9,6 +9,7 @@
 
 #include "protocols/reader/read_protocol.hpp"
 #include "protocols/schedule/schedule.hpp"
+#include "runner/session/participants/terminal_trial.hpp"
 #include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -324,4 +325,21 @@ TEST_CASE("an answer that is entered twice is told once, and its withdrawal too"
     control.enter_answer(answer);
   }
   CHECK(told == std::vector<std::string>{"A", "B", ""});
+}
+
+TEST_CASE("the time that is left is told at the terminal at 30, 10 and 5 s, each once",
+          "[runner][session]") {
+  const auto told = [](std::optional<double> limit_s, const std::vector<double>& times) {
+    runner::TypedCountdown countdown{limit_s};
+    std::vector<int> seconds;
+    for (const double time_s : times) {
+      seconds.push_back(countdown.due(time_s).value_or(0));
+    }
+    return seconds;
+  };
+  CHECK(told(40.0, {0.0, 9.9, 10.0, 10.1, 29.0, 30.0, 34.0, 36.0, 39.0}) ==
+        std::vector{0, 0, 30, 0, 0, 10, 0, 5, 0});
+  CHECK(told(10.0, {0.0, 1.0, 5.0}) == std::vector{0, 0, 5});  // its begin says 10
+  CHECK(told(60.0, {0.0, 56.0, 57.0}) == std::vector{0, 5, 0});
+  CHECK(told({}, {0.0, 1e6}) == std::vector{0, 0});
 }

@@ -56,7 +56,10 @@ std::vector<Interval> differences(const PersonalValues& first, const PersonalVal
   return found;
 }
 
-PairedContrast contrast_of(const std::vector<Interval>& differences) {
+std::optional<PairedContrast> contrast_of(const std::vector<Interval>& differences) {
+  if (differences.size() < 2) {
+    return std::nullopt;
+  }
   std::vector<double> exact;
   for (const Interval& range : differences) {
     if (range.low == range.high) {
@@ -67,6 +70,23 @@ PairedContrast contrast_of(const std::vector<Interval>& differences) {
                                             : censored_contrast(differences, contrasts_seed);
 }
 
+}  // namespace
+
+std::optional<PairedContrast> contrast_of(const PersonalValues& first,
+                                          const PersonalValues& second) {
+  return contrast_of(differences(first, second));
+}
+
+std::optional<PairedContrast> contrast_with(const PersonalValues& values, double number) {
+  PersonalValues same = values;
+  same.beyond.clear();
+  for (const std::string& participant : participants_of(values)) {
+    same.by_participant[participant] = number;
+  }
+  return contrast_of(values, same);
+}
+
+namespace {
 // By the measure, in the order of the blocks.
 std::map<std::string, std::vector<Contrast>> contrasts_of(
     const std::vector<std::shared_ptr<const BlockSummary>>& blocks) {
@@ -78,10 +98,9 @@ std::map<std::string, std::vector<Contrast>> contrasts_of(
       }
       const PersonalValues& first = *blocks[i]->personal;
       const PersonalValues& second = *blocks[j]->personal;
-      const std::vector<Interval> found = differences(first, second);
-      if (found.size() > 1) {
+      if (const auto found = contrast_of(first, second)) {
         contrasts[first.measure].push_back(
-            {blocks[i].get(), blocks[j].get(), contrast_of(found), number_in_both(first, second)});
+            {blocks[i].get(), blocks[j].get(), *found, number_in_both(first, second)});
       }
     }
   }

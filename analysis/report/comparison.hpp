@@ -7,7 +7,15 @@
 #include "analysis/report/document/block_summary.hpp"
 #include "analysis/report/document/sections.hpp"
 #include "analysis/report/summary.hpp"
+#include "analysis/statistics/population/means.hpp"
 namespace tapstudy::analysis {
+// Two blocks of one measure, within participants; of ratios their logarithms. Whoever is known to
+// lie beyond what was presented takes part (censored_contrast). nullopt: fewer than two people.
+std::optional<PairedContrast> contrast_of(const PersonalValues& first,
+                                          const PersonalValues& second);
+// The same of a block's values and one number.
+std::optional<PairedContrast> contrast_with(const PersonalValues& values, double number);
+
 // Blocks of one measure against one another, within participants: the mean difference or the
 // geometric mean ratio, its 95 % interval by t, and the permutation test by signs
 // (paired_contrast), adjusted by Holm 1979 for all pairs of a measure. Parts of a block are

@@ -14,7 +14,9 @@
 #include "analysis/report/document/sections.hpp"
 #include "core/text/print.hpp"
 namespace tapstudy::analysis {
-void write_text(std::ostream& out, const Summary& summary, std::size_t most_lines) {
+namespace {
+// Whose data these are, and what was not as planned.
+void write_head(std::ostream& out, const Summary& summary) {
   core::print(out, "{}\n", summary.title);
   if (const std::string warning = banner(summary); !warning.empty()) {
     core::print(out, "{}\n", warning);
@@ -28,6 +30,11 @@ void write_text(std::ostream& out, const Summary& summary, std::size_t most_line
   for (const std::string& deviation : summary.deviations) {
     core::print(out, "note: {}\n", deviation);
   }
+}
+}  // namespace
+
+void write_text(std::ostream& out, const Summary& summary, std::size_t most_lines) {
+  write_head(out, summary);
   for (const auto& block : summary.blocks) {
     core::print(out, "\n");
     if (!block->block.empty()) {
@@ -40,6 +47,83 @@ void write_text(std::ostream& out, const Summary& summary, std::size_t most_line
       write_sections_text(out, {&section, 1}, most_lines);
     }
   }
+}
+
+namespace {
+std::size_t lines_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count(text, '\n'));
+}
+
+std::string first_table(const ReportSection& section, std::size_t most_lines) {
+  std::ostringstream text;
+  const auto tables = tables_shown(section, &ShownIn::text);
+  if (!tables.empty()) {
+    write_table_text(text, *tables.front(), most_lines);
+  }
+  return text.str();
+}
+
+// What a block was made to find out, and what was declared about it.
+std::string findings_of(const BlockSummary& block) {
+  std::ostringstream text;
+  if (!block.block.empty()) {
+    core::print(text, "\n{}: {}\n", block.block, block.question);
+  }
+  for (const MainResult& result : block.main_results) {
+    text << wrapped(
+        fmt::format("{}: {}{}", result.name, with_interval(result.estimate, result.range),
+                    result.people ? fmt::format(", of {} participants", *result.people) : ""),
+        2);
+  }
+  write_hypotheses_text(text, block.hypotheses);
+  return text.str();
+}
+
+// Comparisons of blocks and groups before the blocks' own.
+std::vector<std::string> first_tables(const Summary& summary, std::size_t most_lines) {
+  std::vector<std::string> tables;
+  for (const ReportSection& section : summary.sections) {
+    if (const std::string table = first_table(section, most_lines);
+        !section.is_detail && !table.empty()) {
+      tables.push_back(fmt::format("\n{}\n{}", section.title, table));
+    }
+  }
+  for (const auto& block : summary.blocks) {
+    tables.push_back(
+        fmt::format("\n{}\n{}", block->block, first_table(block->results(), most_lines)));
+  }
+  return tables;
+}
+}  // namespace
+
+void write_text_within(std::ostream& out, const Summary& summary, std::size_t lines,
+                       std::size_t most_lines) {
+  std::ostringstream whole;
+  write_text(whole, summary, most_lines);
+  const std::size_t all = lines_of(whole.str());
+  if (all <= lines) {
+    out << whole.str();
+    return;
+  }
+  std::ostringstream text;
+  write_head(text, summary);
+  for (const auto& block : summary.blocks) {
+    text << findings_of(*block);
+  }
+  const std::string left =
+      fmt::format("\nall {} lines: --all; figures and methods: report.html\n", all);
+  std::string shown = text.str();
+  for (const std::string& table : first_tables(summary, most_lines)) {
+    if (lines_of(shown + table + left) <= lines) {
+      shown += table;
+    }
+  }
+  for (std::size_t at = 0, line = 0; line + lines_of(left) < lines && at < shown.size(); ++line) {
+    const std::size_t end = std::min(shown.size(), shown.find('\n', at) + 1);
+    out << shown.substr(at, end - at);
+    at = end;
+  }
+  out << left;
 }
 
 namespace {

@@ -8,6 +8,10 @@ namespace tapstudy::analysis {
 // Output formats. Each writes the whole summary; none computes anything.
 // For a terminal; most_lines: of a table.
 void write_text(std::ostream& out, const Summary& summary, std::size_t most_lines = all_lines);
+// The same in so many lines at most: where it would be longer, what the blocks were made to find
+// out and what was declared, then as many of the first tables as there is room for.
+void write_text_within(std::ostream& out, const Summary& summary, std::size_t lines,
+                       std::size_t most_lines);
 void write_html(std::ostream& out, const Summary& summary);   // self-contained, for a browser
 void write_latex(std::ostream& out, const Summary& summary);  // tables to be copied from
 void write_json(std::ostream& out, const Summary& summary);   // for programs; schema_version 1

@@ -26,6 +26,9 @@ inline constexpr std::array references{
     Reference{"Bland & Altman 1986",
               "Bland, J. M. & Altman, D. G. (1986). Statistical methods for assessing agreement "
               "between two methods of clinical measurement. The Lancet 327, 307–310."},
+    Reference{"Bock & Aitkin 1981",
+              "Bock, R. D. & Aitkin, M. (1981). Marginal maximum likelihood estimation of item "
+              "parameters: application of an EM algorithm. Psychometrika 46, 443–459."},
     Reference{"Bowker 1948",
               "Bowker, A. H. (1948). A test for symmetry in contingency tables. Journal of the "
               "American Statistical Association 43, 572–574."},
@@ -135,6 +138,10 @@ inline constexpr std::array references{
     Reference{"Miller & Nicely 1955",
               "Miller, G. A. & Nicely, P. E. (1955). An analysis of perceptual confusions among "
               "some English consonants. Journal of the Acoustical Society of America 27, 338–352."},
+    Reference{"Moscatelli et al. 2012",
+              "Moscatelli, A., Mezzetti, M. & Lacquaniti, F. (2012). Modeling psychophysical data "
+              "at the population-level: the generalized linear mixed model. Journal of Vision "
+              "12(11), 26."},
     Reference{"Plackett 1975",
               "Plackett, R. L. (1975). The analysis of permutations. Journal of the Royal "
               "Statistical Society C 24, 193–202."},

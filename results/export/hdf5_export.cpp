@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -18,8 +19,9 @@
 #include "results/export/study_export.hpp"
 #include "results/export/table.hpp"
 namespace tapstudy::results {
-// A new HDF5 file. Strings are UTF-8 of variable length. Every function throws InvalidInput naming
-// the file if it cannot be written. Times of writing are not stored: equal data, equal bytes.
+// A new HDF5 file. Texts of attributes are UTF-8 of variable length. Every function throws
+// InvalidInput naming the file if it cannot be written. Times of writing are not stored: equal
+// data, equal bytes.
 class Hdf5File {
  public:
   explicit Hdf5File(const std::string& file);
@@ -48,14 +50,15 @@ class Hdf5File {
  private:
   struct Handle;
   struct Shape;
-  template <class Number>
-  void add_numbers(const std::string& path, const Shape& shape, const Number* numbers);
+  // Shuffled and deflated.
+  void add_data(const std::string& path, const Shape& shape, hid_t type, const void* data);
   std::string file_;
   std::unique_ptr<Handle> handle_;
 };
 
 namespace {
 constexpr hsize_t rows_per_chunk = 4096;
+constexpr hsize_t bytes_per_chunk = 1'000'000;  // of texts, at most
 constexpr unsigned deflate_level = 6;
 
 // An object of the library, closed at the end of the scope.
@@ -95,14 +98,6 @@ hid_t text_type() {
   H5Tset_size(type, H5T_VARIABLE);
   H5Tset_cset(type, H5T_CSET_UTF8);
   return type;
-}
-
-// The library's names of types are expressions.
-hid_t type_of(const double* /*numbers*/) {
-  return H5T_NATIVE_DOUBLE;
-}
-hid_t type_of(const std::int64_t* /*numbers*/) {
-  return H5T_NATIVE_INT64;
 }
 
 void write_attribute(hid_t file, const std::string& name, const std::string& path,
@@ -176,20 +171,29 @@ void Hdf5File::describe(const std::string& path, const std::string& attribute,
   write_attribute(handle_->id, file_, path, attribute, H5T_NATIVE_INT64, space, &number);
 }
 
+// Of one length, the longest, because some programs read no others (Octave 7 gives up the file at
+// the first), nor any but ASCII under the name of UTF-8.
 void Hdf5File::add_texts(const std::string& path, const std::vector<const char*>& texts) {
-  const Owned type{text_type(), H5Tclose, file_};
-  const hsize_t count = texts.size();
-  const Owned space{H5Screate_simple(1, &count, nullptr), H5Sclose, file_};
-  const Owned settings{H5Pcreate(H5P_DATASET_CREATE), H5Pclose, file_};
-  H5Pset_obj_track_times(settings, false);
-  const Owned set{
-      H5Dcreate2(handle_->id, path.c_str(), type, space, H5P_DEFAULT, settings, H5P_DEFAULT),
-      H5Dclose, file_};
-  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()), file_);
+  std::size_t longest = 1;
+  bool is_ascii = true;
+  for (const std::string_view text : texts) {
+    longest = std::max(longest, text.size());
+    is_ascii = is_ascii && std::ranges::none_of(text, [](char c) { return (c & '\x80') != 0; });
+  }
+  std::vector<char> packed(texts.size() * longest);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const std::string_view text{texts[i]};
+    std::ranges::copy(text, packed.begin() + static_cast<std::ptrdiff_t>(i * longest));
+  }
+  const Owned type{H5Tcopy(H5T_C_S1), H5Tclose, file_};
+  H5Tset_size(type, longest);
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  H5Tset_cset(type, is_ascii ? H5T_CSET_ASCII : H5T_CSET_UTF8);
+  const hsize_t rows = std::max<hsize_t>(1, bytes_per_chunk / longest);
+  add_data(path, {{texts.size()}, {std::min(chunk_of(texts.size()), rows)}}, type, packed.data());
 }
 
-template <class Number>
-void Hdf5File::add_numbers(const std::string& path, const Shape& shape, const Number* numbers) {
+void Hdf5File::add_data(const std::string& path, const Shape& shape, hid_t type, const void* data) {
   const auto dimensions = static_cast<int>(shape.size.size());
   const Owned space{H5Screate_simple(dimensions, shape.size.data(), nullptr), H5Sclose, file_};
   const Owned settings{H5Pcreate(H5P_DATASET_CREATE), H5Pclose, file_};
@@ -199,24 +203,24 @@ void Hdf5File::add_numbers(const std::string& path, const Shape& shape, const Nu
     H5Pset_shuffle(settings);
     H5Pset_deflate(settings, deflate_level);
   }
-  const Owned set{H5Dcreate2(handle_->id, path.c_str(), type_of(numbers), space, H5P_DEFAULT,
-                             settings, H5P_DEFAULT),
-                  H5Dclose, file_};
-  check(H5Dwrite(set, type_of(numbers), H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers), file_);
+  const Owned set{
+      H5Dcreate2(handle_->id, path.c_str(), type, space, H5P_DEFAULT, settings, H5P_DEFAULT),
+      H5Dclose, file_};
+  check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), file_);
 }
 
 void Hdf5File::add_integers(const std::string& path, const std::vector<std::int64_t>& numbers) {
-  add_numbers(path, {{numbers.size()}, {chunk_of(numbers.size())}}, numbers.data());
+  add_data(path, {{numbers.size()}, {chunk_of(numbers.size())}}, H5T_NATIVE_INT64, numbers.data());
 }
 
 void Hdf5File::add_reals(const std::string& path, const std::vector<double>& numbers) {
-  add_numbers(path, {{numbers.size()}, {chunk_of(numbers.size())}}, numbers.data());
+  add_data(path, {{numbers.size()}, {chunk_of(numbers.size())}}, H5T_NATIVE_DOUBLE, numbers.data());
 }
 
 void Hdf5File::add_matrix(const std::string& path, std::span<const double> numbers,
                           std::size_t columns) {
   const hsize_t rows = numbers.size() / columns;
-  add_numbers(path, {{rows, columns}, {chunk_of(rows), 1}}, numbers.data());
+  add_data(path, {{rows, columns}, {chunk_of(rows), 1}}, H5T_NATIVE_DOUBLE, numbers.data());
 }
 
 namespace {

@@ -34,6 +34,10 @@ std::vector<Column> columns_of_context() {
        "Number of the trial in the participant's order, from 1; missing between trials"},
       {"attempt", integer, "", "1, and one more each time that the trial was presented again"},
       {"track", integer, "", "Which of the block's procedures chose the level, from 1 as listed"},
+      {"level", real, "",
+       "How far the comparison lies from its standard, as the procedure counts: a fraction of it, "
+       "or in the axis's unit"},
+      {"is_reversal", boolean, "", "The staircase turned with this answer"},
       {"repetition", integer, "", "Repetition of the stimulus within its block, from 1"},
       {"is_practice", boolean, "", "Practice: not to be analysed with the study's trials"},
       {"is_catch", boolean, "", "Catch trial, there to see who attends"},

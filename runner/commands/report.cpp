@@ -23,6 +23,7 @@
 #include "runner/studies/study_summary.hpp"
 #include "runner/studies/table_summary.hpp"
 #include "runner/terminal/logging.hpp"
+#include "runner/terminal/terminal_output.hpp"
 namespace tapstudy::runner {
 namespace {
 namespace fs = std::filesystem;
@@ -217,7 +218,12 @@ void run_report(ReportOptions options) {
   check_output_is_new(options);
   const Summary summary = summary_of(options);
   constexpr std::size_t most_lines = 15;  // of a table of participants
-  analysis::write_text(std::cout, summary, options.shows_all ? analysis::all_lines : most_lines);
+  constexpr std::size_t screen = 60;      // lines that somebody reads; programs get all
+  if (options.shows_all || !is_shown_by_terminal()) {
+    analysis::write_text(std::cout, summary, options.shows_all ? analysis::all_lines : most_lines);
+  } else {
+    analysis::write_text_within(std::cout, summary, screen, most_lines);
+  }
   std::cout << std::endl;
   if (!options.out.empty()) {
     write_files(options, summary);
@@ -288,7 +294,9 @@ void add_report(CommandParser& line) {
       "--only", options->only,
       "Only these parts, comma-separated: names of blocks, contrasts, groups, "
       "retest, mixed_models, confidence, sessions, procedures, questionnaires, rendered");
-  command.flag("--all", options->shows_all, "Print the rows of all participants, however many");
+  command.flag(
+      "--all", options->shows_all,
+      "Print all, at a terminal too: the rows of all participants, and more than 60 lines");
   command.flag("--replace", options->replace, "Replace an earlier report");
   command.on_run([options] { run_report(*options); });
 }

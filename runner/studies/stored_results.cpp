@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -157,19 +158,60 @@ void ReplayedTracks::set_tracks(std::vector<results::AnswerRow>& answers) {
   }
 }
 
+namespace {
+// Of a trial that a procedure chose.
+results::Cell level_of(const results::AnswerRow& answer, const protocols::Comparison& comparison) {
+  const auto compared =
+      std::ranges::find(answer.alternatives, true, &results::AlternativeRow::is_comparison);
+  const auto value = compared->axis_values.find(comparison.axis);
+  return value == compared->axis_values.end() ? results::Cell{}
+                                              : results::Cell{comparison.level_of(value->second)};
+}
+
+// How far a participant's track has been gone through, and where it turned.
+struct TrackSoFar {
+  std::size_t trials{};
+  std::vector<protocols::Reversal> reversals;
+};
+// By participant, block and track.
+using TracksSoFar = std::map<std::tuple<std::string, std::string, int>, TrackSoFar>;
+
+bool is_reversal(const AdaptiveBlocks& replayed, const results::AnswerRow& answer,
+                 TracksSoFar& tracks) {
+  const auto [track, is_new] =
+      tracks.try_emplace({answer.participant_id, answer.block, *answer.track});
+  if (is_new) {
+    track->second.reversals = replayed.tracks_of(answer.block)
+                                  .track(static_cast<std::size_t>(*answer.track) - 1)
+                                  .summary()
+                                  .reversals;
+  }
+  return std::ranges::find(track->second.reversals, ++track->second.trials,
+                           &protocols::Reversal::trial) != track->second.reversals.end();
+}
+}  // namespace
+
 results::Table tracks_table(const protocols::Protocol& protocol, results::Store& store) {
   std::vector<results::AnswerRow> answers = results::stored_answers(store);
-  ReplayedTracks{protocol, store}.set_tracks(answers);
+  std::ranges::stable_sort(answers, {}, &results::AnswerRow::trial_id);
+  ReplayedTracks replayed{protocol, store};
+  replayed.set_tracks(answers);
+  TracksSoFar tracks;
   std::vector<results::Row> rows;
   for (const results::AnswerRow& answer : answers) {
     if (answer.track) {
-      rows.push_back({answer.trial_id, answer.participant_id, answer.block,
-                      std::int64_t{answer.number}, std::int64_t{*answer.track}});
+      rows.push_back(
+          {answer.trial_id, answer.participant_id, answer.block, std::int64_t{answer.number},
+           std::int64_t{*answer.track}, level_of(answer, *protocol.block(answer.block).comparison),
+           answer.is_correct ? results::Cell{std::int64_t{*answer.is_correct}} : results::Cell{},
+           std::int64_t{is_reversal(replayed.blocks_of(answer.participant_id), answer, tracks)}});
     }
   }
-  return results::table_of("tracks", "A row an answered trial whose level a procedure chose.",
-                           results::known_columns("trial_id participant_id block number track"),
-                           std::move(rows));
+  return results::table_of(
+      "tracks", "A row an answered trial whose level a procedure chose.",
+      results::known_columns(
+          "trial_id participant_id block number track level is_correct is_reversal"),
+      std::move(rows));
 }
 
 namespace {

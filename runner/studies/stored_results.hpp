@@ -24,6 +24,10 @@ class ReplayedTracks {
   std::vector<analysis::TrackResult> results_of(const std::set<std::string>& participants);
   // Sets the answers' tracks.
   void set_tracks(std::vector<results::AnswerRow>& answers);
+  // As they stand after all answers of one who was replayed and has a session.
+  const AdaptiveBlocks& blocks_of(const std::string& participant) const {
+    return *people_.at(participant);
+  }
 
  private:
   const protocols::Protocol& protocol_;
@@ -31,7 +35,7 @@ class ReplayedTracks {
   bool has_any_;
   std::map<std::string, std::optional<AdaptiveBlocks>> people_;  // unset: has no session
 };
-// The procedure that chose each answered trial's level.
+// The procedure that chose each answered trial's level, and how its track went.
 results::Table tracks_table(const protocols::Protocol& protocol, results::Store& store);
 
 // The contents of one store for the participants of a mode, excluded ones aside.

@@ -163,10 +163,13 @@ analysis::Vote vote_of(const protocols::Block& block) {
 void add_hypothesis(const protocols::Hypothesis& hypothesis, analysis::BlockDesign& part) {
   const analysis::PlannedHypothesis planned{hypothesis.name, hypothesis.statement,
                                             hypothesis.stimulus};
-  if (hypothesis.claim == protocols::Claim::interaction ||
-      hypothesis.claim == protocols::Claim::equivalent) {
-    part.comparisons.push_back({planned, hypothesis.factors, hypothesis.other_stimulus,
-                                hypothesis.other_block, hypothesis.within});
+  using enum protocols::Claim;
+  if (hypothesis.claim == interaction || hypothesis.claim == equivalent ||
+      hypothesis.claim == threshold_ratio || hypothesis.claim == threshold_below) {
+    part.comparisons.push_back(
+        {planned, hypothesis.factors, hypothesis.other_stimulus, hypothesis.other_block,
+         hypothesis.within,
+         hypothesis.claim == threshold_below ? std::optional{hypothesis.below} : std::nullopt});
   } else {
     part.hypotheses.push_back(planned);
   }

@@ -16,6 +16,8 @@ a copy of the checkout in a temporary folder, where its commands run in order; `
     <!-- commands: by hand -->      likewise, for what a person must answer or what takes minutes
     <!-- before: COMMAND -->        shell lines that run first and that the page does not show
 
+A fenced block of python or r is run whole, in the same folder, and must end with the exit code 0.
+
 Commands within a sentence (`tapstudy verify DIR`, `check --rig`), in all .md files but the
 changelog, are looked up in --help.
 Exit code: 0 if all is well, 1 with one line for each problem.
@@ -35,6 +37,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SECONDS_A_COMMAND = 120
 COMMAND = re.compile(r"(\./run\.sh|tapstudy|sqlite3)( |$)")
 FENCE = re.compile(r"\s*(```|~~~)")
+INTERPRETERS = {"python": ["/usr/bin/python3", "-c"], "r": ["/usr/bin/Rscript", "-e"]}
 CODE_SPAN = re.compile(r"(`+)(.+?)\1")
 
 
@@ -54,8 +57,9 @@ def listed_files(root):
 class Block:
     """A code block: its lines with their numbers, and the comments directly before it."""
 
-    def __init__(self, comments):
+    def __init__(self, comments, language=""):
         self.comments = comments
+        self.language = language
         self.lines = []
 
 
@@ -74,7 +78,7 @@ def split(text):
         opening = FENCE.match(line)
         if opening:
             fence = opening.group(1)
-            block = Block(comments)
+            block = Block(comments, line.strip().removeprefix(fence))
             blocks.append(block)
             comments = []
         elif line.startswith("    ") and (block or previous_is_blank):
@@ -203,10 +207,13 @@ def run_sql(command, folder):
 
 
 def run_shell(command, folder, environment):
+    return run(["bash", "-euc", command], folder, environment)
+
+
+def run(command, folder, environment):
     try:
-        done = subprocess.run(["bash", "-euc", command], cwd=folder, env=environment,
-                              stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                              timeout=SECONDS_A_COMMAND)
+        done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, timeout=SECONDS_A_COMMAND)
     except subprocess.TimeoutExpired:
         return f"takes longer than {SECONDS_A_COMMAND} s"
     if done.returncode == 0:
@@ -232,6 +239,11 @@ def check_page(page, folder, environment, help_):
                     problems.append(f"{page}:{block.lines[0][0]}: commands before it: {wrong}")
         for unknown in set(ways) - {"hardware", "by hand"}:
             problems.append(f"{page}:{block.lines[0][0]}: 'commands: {unknown}' means nothing")
+        if block.language in INTERPRETERS:
+            script = "\n".join(line for _, line in block.lines)
+            wrong = run([*INTERPRETERS[block.language], script], folder, environment)
+            if wrong:
+                problems.append(f"{page}:{block.lines[0][0]}: this {block.language}: {wrong}")
         for number, command in commands(block):
             if re.fullmatch(r"\./run\.sh\s*(#.*)?", command):
                 continue  # sets up and runs the demo: .ci/run does that

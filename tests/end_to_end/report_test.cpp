@@ -392,10 +392,24 @@ TEST_CASE("an export says which of interleaved staircases chose each level", "[e
        "exported = [(r['number'], r['track']) for r in csv.DictReader(open(sys.argv[1]))]\n"
        "reported = [(r['trial'], r['track']) for r in csv.DictReader(\n"
        "  line for line in open(sys.argv[2]) if not line.startswith('#'))]\n"
-       "print(sorted(exported) == sorted(reported), len(set(t for _, t in exported)))\n",
+       "print(sorted(exported) == sorted(reported), len(set(t for _, t in exported)))\n"
+       // a staircase turns where the level that follows lies on the other side than the one before
+       "tracks = {}\n"
+       "for r in csv.DictReader(open(sys.argv[1])):\n"
+       "  tracks.setdefault(r['track'], []).append((float(r['level']), r['is_reversal'] == '1', "
+       "r['is_correct']))\n"
+       "turned, told = [], []\n"
+       "for track in tracks.values():\n"
+       "  last = 0\n"
+       "  for (a, is_reversal, _), (b, _, _) in zip(track, track[1:]):\n"
+       "    move = (b > a) - (b < a)\n"
+       "    turned.append(bool(move and last and move != last))\n"
+       "    told.append(is_reversal)\n"
+       "    last = move or last\n"
+       "print(turned == told, sum(told) > 3, sorted(set(p[2] for t in tracks.values() for p in t)))\n",
        (directory / "e") + "/tracks.csv", study + "/report/damping_tracks.csv"});
   INFO(both.standard_error);
-  CHECK(both.standard_output == "True 2\n");
+  CHECK(both.standard_output == "True 2\nTrue True ['0', '1']\n");
 }
 
 namespace {

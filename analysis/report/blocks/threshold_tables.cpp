@@ -78,12 +78,11 @@ ReportTable participants_table(const BlockDesign& design, const ThresholdResults
   return table;
 }
 
-// Of log10 thresholds over participants.
 struct MeanThreshold {
-  int participants{};
-  double log10{};
+  std::size_t participants{};
+  double threshold{};
   Interval interval;
-  double standard_deviation{};
+  double standard_deviation{};  // between participants, on the axis that the column names
 };
 
 ReportTable mean_table(const std::string& name, const std::string& title, const Column& deviation,
@@ -94,9 +93,8 @@ ReportTable mean_table(const std::string& name, const std::string& title, const 
   }
   table.columns.push_back(deviation);
   if (mean) {
-    std::vector<Cell> row{count(mean->participants)};
-    add_threshold(row, axis, std::pow(10.0, mean->log10),
-                  {std::pow(10.0, mean->interval.low), std::pow(10.0, mean->interval.high)});
+    std::vector<Cell> row{count(static_cast<std::int64_t>(mean->participants))};
+    add_threshold(row, axis, mean->threshold, mean->interval);
     row.push_back(number(mean->standard_deviation));
     table.rows.push_back(row);
   }
@@ -106,10 +104,40 @@ ReportTable mean_table(const std::string& name, const std::string& title, const 
 ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results) {
   std::optional<MeanThreshold> mean;
   if (const auto& of = results.mean_log) {
-    mean = {of->participants, of->mean, of->interval, of->standard_deviation};
+    mean = {static_cast<std::size_t>(of->participants),
+            std::pow(10.0, of->mean),
+            {std::pow(10.0, of->interval.low), std::pow(10.0, of->interval.high)},
+            of->standard_deviation};
   }
   return mean_table("pooled", "Over participants: geometric mean of the thresholds",
                     column("SD of log10 thresholds", "sd_log10"), axis, mean);
+}
+
+// Of all participants in one fit, whether they have a threshold of their own or not.
+ReportTable population_table(const BlockDesign& design, const ThresholdResults& results) {
+  std::optional<MeanThreshold> mean;
+  if (const auto& of = results.population) {
+    mean = {of->people.size(), of->threshold, of->interval, of->deviation};
+  }
+  const bool is_logarithmic = core::row_of(design.shape).is_logarithmic;
+  return mean_table("population", "Over participants: one fit of all of them",
+                    is_logarithmic ? column("SD between them of log10 thresholds", "sd_log10")
+                                   : column("SD between them", "sd"),
+                    *design.axis, mean);
+}
+
+ReportTable population_people_table(const ThresholdResults& results) {
+  ReportTable table{"population_participants",
+                    "Thresholds in the fit of all participants (95 %, the population as known)",
+                    {column("participant", "participant_id"),
+                     interval_column("threshold", "population_threshold")}};
+  if (const auto& fit = results.population) {
+    for (std::size_t i = 0; i < fit->people.size(); ++i) {
+      table.rows.push_back({word(results.participants[i].participant_id),
+                            interval(fit->people[i].threshold, fit->people[i].interval)});
+    }
+  }
+  return table;
 }
 
 Cell slope_cell(const ThresholdEstimate& of) {
@@ -271,6 +299,8 @@ std::vector<ReportTable> threshold_tables(const BlockDesign& design,
                                           const ThresholdResults& results) {
   return {participants_table(design, results),
           pooled_table(*design.axis, results),
+          population_table(design, results),
+          population_people_table(results),
           fits_table(design, results),
           posteriors_table(results),
           priors_table(results),

@@ -108,6 +108,20 @@ void add_posterior(ParticipantThreshold& person, const PsychometricModel& model,
   }
 }
 
+std::optional<PopulationFit> population_of(const std::vector<ParticipantThreshold>& people,
+                                           const PsychometricModel& model,
+                                           const BlockDesign& design) {
+  std::vector<std::vector<Level>> levels;
+  for (const ParticipantThreshold& person : people) {
+    levels.push_back(fitted_levels(person, design));
+  }
+  try {
+    return fit_population(model, levels);
+  } catch (const core::NotEstimable&) {  // which each participant's fit says
+    return std::nullopt;
+  }
+}
+
 std::optional<MeanLogThreshold> mean_of(const std::vector<ParticipantThreshold>& people) {
   std::vector<double> logarithms;
   for (const ParticipantThreshold& person : people) {
@@ -185,6 +199,9 @@ ThresholdResults participant_thresholds(const BlockDesign& design,
   const bool is_examined = levels <= most_levels_examined && !design.is_for_main_results;
   results.draws = is_examined ? draws_of_fit : 0;
   const PsychometricModel model = model_of(design);
+  if (levels <= most_levels_examined) {
+    results.population = population_of(results.participants, model, design);
+  }
   parallel_for(results.participants.size(), 0, [&](std::size_t i) {
     ParticipantThreshold& person = results.participants[i];
     const std::vector<Level> fitted = fitted_levels(person, design);
@@ -272,6 +289,17 @@ std::vector<CitingText> remarks_on_people(const std::vector<ParticipantThreshold
   return remarks;
 }
 
+CitingText words_of_population(const BlockDesign& design) {
+  return core::citing(
+      "Fit of all participants together: thresholds ({}) and logarithms of slopes are normal over "
+      "participants, whose answers, also right or wrong at all levels, count as they are ({}); by "
+      "marginal likelihood ({}), with lapses of each integrated out. Interval by profile "
+      "likelihood, with the quantile of t. Each participant's threshold is drawn to the mean the "
+      "more, the less the answers tell; its interval takes the population as known.",
+      core::row_of(design.shape).is_logarithmic ? "their logarithms" : "as they are",
+      "Moscatelli et al. 2012"_source, "Bock & Aitkin 1981"_source);
+}
+
 std::vector<CitingText> remarks_on_mean(const ThresholdResults& results) {
   if (!results.mean_log) {
     return {"No mean over participants: it takes two with a threshold."};
@@ -283,9 +311,10 @@ std::vector<CitingText> remarks_on_mean(const ThresholdResults& results) {
   const int without =
       static_cast<int>(results.participants.size()) - results.mean_log->participants;
   if (without > 0) {
-    remarks.push_back(fmt::format(
-        "It leaves out {} without a threshold, which biases it.",
-        without == 1 ? "the participant" : fmt::format("the {} participants", without)));
+    remarks.push_back(
+        fmt::format("It leaves out {} without a threshold, which biases it{}.",
+                    without == 1 ? "the participant" : fmt::format("the {} participants", without),
+                    results.population ? "; the fit of all participants together does not" : ""));
   }
   return remarks;
 }
@@ -308,6 +337,9 @@ std::vector<CitingText> threshold_remarks(const BlockDesign& design,
                   100.0 * core::shape_value(design.shape, 1.0, 1.0, 1.0))};
   std::ranges::copy(remarks_on_people(results.participants), std::back_inserter(remarks));
   std::ranges::copy(remarks_on_mean(results), std::back_inserter(remarks));
+  if (results.population) {
+    remarks.push_back(words_of_population(design));
+  }
   remarks.push_back(
       results.draws > 0
           ? fmt::format("Deviance test: {} parametric bootstrap draws; a small p says that the "
@@ -322,16 +354,29 @@ std::vector<CitingText> threshold_remarks(const BlockDesign& design,
 }
 
 namespace {
-MainResult mean_threshold(const VariedAxis& axis, const MeanLogThreshold& log_mean) {
+// Of the fit of all where the mean would leave somebody out.
+std::optional<MainResult> mean_threshold(const VariedAxis& axis, const ThresholdResults& results) {
   const auto from_log = [](double log) { return std::pow(10.0, log); };
-  return {axis.is_fraction ? "Weber fraction of " + axis.name.quantity
-                           : "just noticeable difference of " + axis.name.with_unit(),
-          from_log(log_mean.mean),
-          {from_log(log_mean.interval.low), from_log(log_mean.interval.high)},
-          {},
-          {},
-          true,
-          log_mean.participants};
+  MainResult mean;
+  mean.name = axis.is_fraction ? "Weber fraction of " + axis.name.quantity
+                               : "just noticeable difference of " + axis.name.with_unit();
+  mean.is_ratio = true;
+  if (const auto& of = results.population; of && results.leaves_out_people() &&
+                                           of->threshold > 0.0 && of->interval.low > 0.0 &&
+                                           std::isfinite(of->interval.high)) {
+    mean.estimate = of->threshold;
+    mean.range = of->interval;
+    mean.people = static_cast<int>(results.participants.size());
+    return mean;
+  }
+  if (!results.mean_log) {
+    return std::nullopt;
+  }
+  mean.estimate = from_log(results.mean_log->mean);
+  mean.range = {from_log(results.mean_log->interval.low),
+                from_log(results.mean_log->interval.high)};
+  mean.people = results.mean_log->participants;
+  return mean;
 }
 
 // A threshold is where the function without guesses has a value that depends on its shape.
@@ -366,8 +411,8 @@ std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
   summary->results().charts = threshold_charts(design, results);
   summary->results().remarks = threshold_remarks(design, results);
   summary->personal = thresholds_of(design, results);
-  if (results.mean_log) {
-    summary->main_results = {mean_threshold(*design.axis, *results.mean_log)};
+  if (const auto mean = mean_threshold(*design.axis, results)) {
+    summary->main_results = {*mean};
   }
   return summary;
 }

@@ -9,6 +9,7 @@
 #include "analysis/report/document/cells.hpp"
 #include "analysis/report/document/chart.hpp"
 #include "analysis/statistics/population/means.hpp"
+#include "analysis/statistics/psychometric/hierarchical.hpp"
 #include "analysis/statistics/psychometric/inference.hpp"
 namespace tapstudy::analysis {
 // What the answers of a block say of each participant's threshold.
@@ -65,6 +66,10 @@ struct ThresholdResults {
   std::vector<ParticipantThreshold> participants;  // by name
   int draws{};                                     // of the tests of fit; 0: not made
   std::optional<MeanLogThreshold> mean_log;        // of two thresholds or more
+  std::optional<PopulationFit> population;         // unset also where it would take too long
+  bool leaves_out_people() const {
+    return mean_log && static_cast<std::size_t>(mean_log->participants) < participants.size();
+  }
 };
 
 // The block's psychometric function with its guess rate, or a free one, and a lapse rate of up to

@@ -17,10 +17,12 @@ struct PlannedHypothesis {
 // A declared hypothesis about means over participants of what each of them answered.
 struct PlannedComparison {
   PlannedHypothesis hypothesis;
-  std::vector<std::string> factors{};  // an interaction of two; empty: an equivalence
+  std::vector<std::string> factors{};  // an interaction of two; empty: another claim
   std::string other_stimulus{};        // to this, or …
   std::string other_block{};           // … to this block
-  double within{};  // the largest difference that is none; of ratios the largest ratio
+  double within{};  // the largest difference that is none; of ratios the largest ratio; 0: the
+                    // claim is that the blocks differ
+  std::optional<double> below{};  // the claim is that what the block measures lies below this
 };
 // The choice that counts of a participant who chose several times: the most frequent (of equals the
 // earliest), or the first.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "analysis/report/comparison.hpp"
 #include "analysis/report/document/wording.hpp"
 #include "analysis/statistics/population/planned_contrasts.hpp"
 #include "core/error.hpp"
@@ -118,6 +119,56 @@ HypothesisResult equivalent_blocks(const PlannedComparison& planned,
                         static_cast<std::size_t>(number_in_both(*first, *second)), first->is_ratio);
 }
 
+HypothesisResult contrast_result(const PlannedComparison& planned, const PairedContrast& contrast,
+                                 const PersonalValues& values, std::size_t all,
+                                 const std::string& against) {
+  const auto shown = [&](double value) {
+    return rounded(values.is_ratio ? std::exp(value) : value);
+  };
+  HypothesisResult result = not_tested(
+      planned, fmt::format("permutation test by signs of participants' {} against {}, {}; {}",
+                           values.is_ratio ? "logarithms of ratios" : "differences", against,
+                           planned.below ? "one-sided" : "two-sided",
+                           n_of_all(static_cast<std::size_t>(contrast.participants), all)));
+  result.p = contrast.p;
+  result.finding =
+      std::isnan(contrast.mean)
+          ? "by order alone: too few have a value"
+          : fmt::format(
+                "mean {} {}{}", values.is_ratio ? "ratio" : "difference", shown(contrast.mean),
+                contrast.interval ? fmt::format(", 95 % CI {} to {}", shown(contrast.interval->low),
+                                                shown(contrast.interval->high))
+                                  : "");
+  return result;
+}
+
+HypothesisResult different_blocks(const PlannedComparison& planned,
+                                  const std::optional<PersonalValues>& first,
+                                  const std::optional<PersonalValues>& second) {
+  if (!first || !second || first->measure != second->measure) {
+    return not_tested(planned, "the blocks have no values of one measure");
+  }
+  const auto contrast = contrast_of(*first, *second);
+  return contrast ? contrast_result(planned, *contrast, *first,
+                                    static_cast<std::size_t>(number_in_both(*first, *second)),
+                                    "those of " + planned.other_block)
+                  : not_tested(planned, "fewer than two participants have values of both");
+}
+
+// By symmetry of the signs, the probability on one side is half of that on both.
+HypothesisResult below_level(const PlannedComparison& planned,
+                             const std::optional<PersonalValues>& values) {
+  const auto contrast = values ? contrast_with(*values, *planned.below) : std::nullopt;
+  if (!contrast || std::isnan(contrast->mean)) {
+    return not_tested(planned, "fewer than two participants have values");
+  }
+  HypothesisResult result =
+      contrast_result(planned, *contrast, *values, participants_of(*values).size(),
+                      fmt::format("{}", rounded(*planned.below)));
+  result.p = contrast->mean < 0.0 ? 0.5 * contrast->p : 1.0 - 0.5 * contrast->p;
+  return result;
+}
+
 // The stimuli of each combination of levels: rows of the first factor, columns of the second.
 using StimuliOfCells = std::vector<std::vector<std::vector<std::string>>>;
 
@@ -207,8 +258,12 @@ HypothesisResult result_of(const PlannedComparison& planned, const BlockDesign& 
     if (!design.premise.empty()) {
       return not_tested(planned, design.premise);
     }
+    if (planned.below) {
+      return below_level(planned, personal(design.name));
+    }
     if (!planned.other_block.empty()) {
-      return equivalent_blocks(planned, personal(design.name), personal(planned.other_block));
+      const auto compare = planned.within > 0.0 ? equivalent_blocks : different_blocks;
+      return compare(planned, personal(design.name), personal(planned.other_block));
     }
     const MeansByStimulus means = means_by_stimulus(answers);
     return planned.factors.empty() ? equivalent_stimuli(planned, means)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "analysis/report/writers.hpp"
 #include "analysis/statistics/detection/decision_model.hpp"
 #include "analysis/statistics/psychometric/inference.hpp"
 #include "core/error.hpp"
@@ -251,6 +252,30 @@ TEST_CASE("who has no threshold is given none, and every format says why",
   CHECK_THAT(formats.text, Contains("always_right has no threshold: " + reason.substr(0, 20)));
 }
 
+TEST_CASE("where somebody has no threshold the block's result is of the fit of all",
+          "[analysis][thresholds]") {
+  auto answers = joined(observer("a", 0.08, 12, 1),
+                        joined(observer("b", 0.1, 12, 2), observer("c", 0.15, 12, 3)));
+  const auto result_of = [](const std::vector<results::AnswerRow>& all) {
+    return summarise_thresholds(design_of(), {all, {}})->main_results.at(0).estimate;
+  };
+  CHECK(result_of(answers) ==
+        reported(statistic, design_of(), answers).json["pooled"][0]["threshold"].get<double>());
+  auto always_right = observer("d", 0.01, 12, 4);
+  for (results::AnswerRow& answer : always_right) {
+    answer.is_correct = true;
+  }
+  answers = joined(answers, always_right);
+  const Formats formats = reported(statistic, design_of(), answers);
+  CHECK(formats.json["pooled"][0]["participants"] == 3);
+  const auto population = formats.json["population"][0];
+  CHECK(population["participants"] == 4);
+  CHECK(population["threshold"] < formats.json["pooled"][0]["threshold"]);
+  CHECK(result_of(answers) == population["threshold"].get<double>());
+  CHECK(formats.json["population_participants"].size() == 4);
+  CHECK_THAT(formats.text, Contains("which biases it; the fit"));
+}
+
 TEST_CASE("one level is reported as what it is, without a fit", "[analysis][thresholds]") {
   const Formats formats = reported(statistic, design_of(),
                                    {answer_to("p", 1, 0.1, true), answer_to("p", 2, 0.1, false)});
@@ -361,6 +386,21 @@ TEST_CASE("a report of thresholds fits a terminal and names its figures",
   CHECK(testing::longest_line(formats.text) <= 100);
   CHECK_THAT(formats.html, Contains("aria-label=\"Psychometric function of a:"));
   CHECK_THAT(formats.html, Contains("aria-label=\"Levels of b over 180 trials"));
+  Summary summary;
+  summary.blocks = {summarise_thresholds(design_of(), {answers, {}})};
+  const auto within = [&](std::size_t lines) {
+    std::ostringstream out;
+    write_text_within(out, summary, lines, all_lines);
+    return out.str();
+  };
+  const std::string whole = within(10'000);
+  REQUIRE(std::count(whole.begin(), whole.end(), '\n') > 60);
+  const std::string screen = within(60);
+  CHECK(std::count(screen.begin(), screen.end(), '\n') <= 60);
+  CHECK_THAT(screen, Contains("Weber fraction of Young's modulus: 0.") &&
+                         Contains("of 2 participants") && Contains("lines: --all"));
+  const std::string small = within(5);
+  CHECK(std::count(small.begin(), small.end(), '\n') <= 5);
 }
 
 TEST_CASE("a threshold takes an axis, its values and answers that are right or wrong",

@@ -83,31 +83,67 @@ TEST_CASE("declared interactions and equivalences are tested of those with all v
         Approx(std::max({*found[0].p, *found[1].p, 2.0 * std::min(*found[0].p, *found[1].p)})));
 }
 
-TEST_CASE("blocks are equivalent by ratios where they measure ratios",
-          "[analysis][report][planned]") {
+namespace {
+struct ThresholdStudy {
   StudyDesign design;
   std::vector<std::shared_ptr<BlockSummary>> blocks;
-  const auto add = [&](const std::string& name, const std::map<std::string, double>& thresholds) {
+  PersonalValues& add(const std::string& name, const std::map<std::string, double>& thresholds) {
     BlockDesign block;
     block.name = name;
     design.blocks.push_back(block);
     blocks.push_back(std::make_shared<BlockSummary>(block));
     blocks.back()->personal = PersonalValues{"threshold", true, thresholds};
-  };
-  add("first", {{"A", 0.10}, {"B", 0.20}, {"C", 0.30}, {"D", 0.40}});
-  add("second", {{"A", 0.11}, {"B", 0.19}, {"C", 0.31}});
-  blocks.back()->personal->beyond["D"] = {0.5, std::numeric_limits<double>::infinity()};
-  design.blocks.front().comparisons = {{{"same", "", ""}, {}, "", "second", 1.25}};
-  add_planned_comparisons(design, {{"first", {}}}, blocks);
-  const HypothesisResult& found = blocks.front()->hypotheses.front();
+    return *blocks.back()->personal;
+  }
+  HypothesisResult test(const PlannedComparison& planned) {
+    design.blocks.front().comparisons = {planned};
+    add_planned_comparisons(design, {{"first", {}}}, blocks);
+    return blocks.front()->hypotheses.back();
+  }
+};
+}  // namespace
+
+TEST_CASE("blocks are equivalent by ratios where they measure ratios",
+          "[analysis][report][planned]") {
+  ThresholdStudy study;
+  study.add("first", {{"A", 0.10}, {"B", 0.20}, {"C", 0.30}, {"D", 0.40}});
+  study.add("second", {{"A", 0.11}, {"B", 0.19}, {"C", 0.31}}).beyond["D"] = {
+      0.5, std::numeric_limits<double>::infinity()};
+  const PlannedComparison planned{{"same", "", ""}, {}, "", "second", 1.25, {}};
+  const HypothesisResult found = study.test(planned);
   const EquivalenceTest test = equivalence_test(
       {std::log(0.10 / 0.11), std::log(0.20 / 0.19), std::log(0.30 / 0.31)}, std::log(1.25));
   REQUIRE(found.p);
   CHECK(*found.p == Approx(test.p));
   CHECK_THAT(found.test, Contains("against 0.8 and 1.25") && Contains("3 of 4 participants"));
   SECTION("and not where one of them measures something else") {
-    blocks.back()->personal->measure = "share";
-    add_planned_comparisons(design, {{"first", {}}}, blocks);
-    CHECK_FALSE(blocks.front()->hypotheses.back().p);
+    study.blocks.back()->personal->measure = "share";
+    CHECK_FALSE(study.test(planned).p);
   }
+}
+
+// Of eight people who all point the same way 2 of 2^8 patterns of signs are as extreme.
+TEST_CASE("a claim about thresholds is tested of all, also of those beyond the levels",
+          "[analysis][report][planned]") {
+  ThresholdStudy study;
+  study.add("first", {{"A", 0.10},
+                      {"B", 0.12},
+                      {"C", 0.11},
+                      {"D", 0.15},
+                      {"E", 0.09},
+                      {"F", 0.13},
+                      {"G", 0.10},
+                      {"H", 0.14}});
+  PersonalValues& second = study.add("second", {{"A", 0.20}, {"B", 0.31}});
+  for (const char* const name : {"C", "D", "E", "F", "G", "H"}) {
+    second.beyond[name] = {0.4, std::numeric_limits<double>::infinity()};
+  }
+  const HypothesisResult differ = study.test({{"other", "", ""}, {}, "", "second", 0.0, {}});
+  REQUIRE(differ.p);
+  CHECK(*differ.p == Approx(2.0 / 256.0));
+  CHECK_THAT(differ.test, Contains("two-sided") && Contains("; 8 participants"));
+  const HypothesisResult below = study.test({{"fine", "", ""}, {}, "", "", 0.0, 0.16});
+  REQUIRE(below.p);
+  CHECK(*below.p == Approx(1.0 / 256.0));
+  CHECK(*study.test({{"finer", "", ""}, {}, "", "", 0.0, 0.05}).p == Approx(255.0 / 256.0));
 }

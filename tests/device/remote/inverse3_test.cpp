@@ -96,33 +96,6 @@ TEST_CASE("a service of the Inverse3 that hangs or ends is told, and gets a zero
   }
 }
 
-// A state that follows another would wait for that at the service, for 40 ms.
-TEST_CASE("a state that no force follows is acknowledged before the bridge tells it",
-          "[device][remote]") {
-  ServiceStandIn service;
-  const std::uint16_t port = testing::free_port();
-  const testing::ExampleBridge bridge{port, service.command()};
-  device::RemoteHand hand{port, {unhurried, 1.0}};
-  core::HandState state;
-  for (int i = 0; i < 100; ++i) {  // the kernel begins by acknowledging at once itself
-    REQUIRE(read_fresh(hand, state, {0.0, 2.0, 0.0}) == TickFault::none);
-  }
-  service.is_silent = true;
-  while (service.force_n().z() != 1.0) {
-    static_cast<void>(hand.write({0.0, 1.0, 0.0}));
-    static_cast<void>(hand.read(state, 1e-3));
-  }
-  static_cast<void>(hand.zero_force());  // sent at once, while a state is awaited: two are now
-  service.tremble();
-  const double before_m = state.position_m.x();
-  service.tell_another_state();
-  while (state.position_m.x() == before_m) {
-    static_cast<void>(hand.write(Vec3::Zero()));
-    static_cast<void>(hand.read(state, 1e-3));
-  }
-  CHECK(service.is_acknowledged());
-}
-
 TEST_CASE("the bridge of the Inverse3 ends where the service knows none", "[device][remote]") {
   const ServiceStandIn service{false};
   testing::ExampleBridge bridge{testing::free_port(), service.command()};

@@ -1,12 +1,9 @@
 #pragma once
-#include <netinet/tcp.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <cmath>
@@ -62,17 +59,6 @@ class ServiceStandIn {
   void stand_still() { tremor_m_ = 0.0; }
   void lose_position() { is_lost_ = true; }
   void answer_every_other() { answers_every_other_ = true; }
-  // A state that no force has asked for.
-  void tell_another_state() {
-    boost::asio::post(context_, [this] { tell_state(); });
-  }
-  // Of what was sent to the bridge its kernel has acknowledged all.
-  bool is_acknowledged() const {
-    tcp_info info{};
-    socklen_t size = sizeof info;
-    getsockopt(descriptor_, IPPROTO_TCP, TCP_INFO, &info, &size);
-    return info.tcpi_unacked == 0;
-  }
   std::atomic<bool> is_silent{false};
 
  private:
@@ -80,7 +66,6 @@ class ServiceStandIn {
   using Tcp = boost::asio::ip::tcp;
   using Session = boost::beast::websocket::stream<Tcp::socket>;
   void begin(Tcp::socket socket) {
-    descriptor_ = socket.native_handle();
     session_ = std::make_unique<Session>(std::move(socket));
     session_->accept();
     tell_state();
@@ -133,7 +118,6 @@ class ServiceStandIn {
   std::atomic<bool> is_lost_{false};
   std::atomic<bool> answers_every_other_{false};
   int asked_{0};
-  int descriptor_{-1};
   int states_{0};
   std::thread thread_;
 };

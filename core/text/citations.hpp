@@ -152,10 +152,6 @@ inline constexpr std::array references{
               "Schütt, H. H., Harmeling, S., Macke, J. H. & Wichmann, F. A. (2016). Painfree and "
               "accurate Bayesian estimation of psychometric functions for (potentially) "
               "overdispersed data. Vision Research 122, 105–123."},
-    Reference{"Sison & Glaz 1995",
-              "Sison, C. P. & Glaz, J. (1995). Simultaneous confidence intervals and sample size "
-              "determination for multinomial proportions. Journal of the American Statistical "
-              "Association 90, 366–369."},
     Reference{
         "Stuart 1955",
         "Stuart, A. (1955). A test for homogeneity of the marginal distributions in a two-way "

@@ -277,8 +277,7 @@ Cell chosen_cell(const AlternativeResult& result, double chance) {
   };
   Cell cell{fraction(result.chosen),
             {result.chosen.successes, result.chosen.trials, end(result.interval, &Interval::low),
-             end(result.interval, &Interval::high), end(result.sison_glaz, &Interval::low),
-             end(result.sison_glaz, &Interval::high)}};
+             end(result.interval, &Interval::high)}};
   if (result.interval) {
     cell.text = fmt::format("{} (95 % CI {})", fraction_and_percent(result.chosen),
                             percent_range(*result.interval));
@@ -288,18 +287,15 @@ Cell chosen_cell(const AlternativeResult& result, double chance) {
 }
 
 ReportTable choices_table(const std::vector<AlternativeResult>& alternatives) {
-  ReportTable table{
-      "choices",
-      "Choices",
-      {column("stimulus", "stimulus"),
-       {"chosen",
-        {"votes", "voters", "goodman_low", "goodman_high", "sison_glaz_low", "sison_glaz_high"}},
-       column("visits", "visits"),
-       column("time tried", "dwell_s")}};
+  ReportTable table{"choices",
+                    "Choices",
+                    {column("stimulus", "stimulus"),
+                     {"chosen", {"votes", "voters", "goodman_low", "goodman_high"}},
+                     column("visits", "visits"),
+                     column("time tried", "dwell_s")}};
   table.shown_in.json = false;  // which has them as `alternatives`
-  table.note = core::citing(
-      "Intervals: 95 %, of all alternatives at once ({}); in the tables also others ({}).",
-      "Goodman 1965"_source, "Sison & Glaz 1995"_source);
+  table.note =
+      core::citing("Intervals: 95 %, of all alternatives at once ({}).", "Goodman 1965"_source);
   for (const AlternativeResult& result : alternatives) {
     table.rows.push_back({labelled(result.item),
                           chosen_cell(result, 1.0 / static_cast<double>(alternatives.size())),
@@ -339,7 +335,6 @@ Json values_of(const ChoiceSummary& summary) {
     json["alternatives"].push_back({{"stimulus", result.item.name},
                                     {"chosen", as_json(result.chosen)},
                                     {"goodman_95", ends(result.interval)},
-                                    {"sison_glaz_95", ends(result.sison_glaz)},
                                     {"visits", result.visits},
                                     {"dwell_s", result.dwell_s}});
   }
@@ -372,10 +367,8 @@ std::shared_ptr<BlockSummary> summarise_choice(const BlockDesign& design, const 
   }
   if (!votes.empty() && counts.size() > 1) {
     const std::vector<Interval> intervals = simultaneous_intervals(counts);
-    const std::vector<Interval> others = sison_glaz_intervals(counts);
     for (std::size_t i = 0; i < intervals.size(); ++i) {
       summary->alternatives[i].interval = intervals[i];
-      summary->alternatives[i].sison_glaz = others[i];
     }
   }
   if (summary->untested.empty()) {

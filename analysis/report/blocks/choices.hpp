@@ -37,7 +37,6 @@ struct AlternativeResult {
   std::optional<Interval> interval;  // 95 %, of all alternatives at once; unset without votes
   int visits{};
   double dwell_s{};
-  std::optional<Interval> sison_glaz{};  // the same by another method
 };
 
 // Several stimuli per trial, one of which is chosen, none correct: the frequency of each choice.

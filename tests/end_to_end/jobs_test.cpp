@@ -3,6 +3,7 @@
 #include "support/built_paths.hpp"
 #include "support/catch.hpp"
 #include "support/processes.hpp"
+#include "support/texts.hpp"
 using namespace tapstudy;
 
 namespace {

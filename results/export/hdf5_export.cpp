@@ -171,14 +171,13 @@ void Hdf5File::describe(const std::string& path, const std::string& attribute,
   write_attribute(handle_->id, file_, path, attribute, H5T_NATIVE_INT64, space, &number);
 }
 
-// Of one length, the longest, because some programs read no others (Octave 7 gives up the file at
-// the first), nor any but ASCII under the name of UTF-8.
+// Bytes of UTF-8 of one length, the longest, under the name of ASCII: Octave gives up the whole
+// file at the first text that has its own length, or is called UTF-8. It shows these as they are,
+// as R does.
 void Hdf5File::add_texts(const std::string& path, const std::vector<const char*>& texts) {
   std::size_t longest = 1;
-  bool is_ascii = true;
   for (const std::string_view text : texts) {
     longest = std::max(longest, text.size());
-    is_ascii = is_ascii && std::ranges::none_of(text, [](char c) { return (c & '\x80') != 0; });
   }
   std::vector<char> packed(texts.size() * longest);
   for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -188,7 +187,6 @@ void Hdf5File::add_texts(const std::string& path, const std::vector<const char*>
   const Owned type{H5Tcopy(H5T_C_S1), H5Tclose, file_};
   H5Tset_size(type, longest);
   H5Tset_strpad(type, H5T_STR_NULLPAD);
-  H5Tset_cset(type, is_ascii ? H5T_CSET_ASCII : H5T_CSET_UTF8);
   const hsize_t rows = std::max<hsize_t>(1, bytes_per_chunk / longest);
   add_data(path, {{texts.size()}, {std::min(chunk_of(texts.size()), rows)}}, type, packed.data());
 }

@@ -160,9 +160,13 @@ void ReplayedTracks::set_tracks(std::vector<results::AnswerRow>& answers) {
 
 namespace {
 // Of a trial that a procedure chose.
-results::Cell level_of(const results::AnswerRow& answer, const protocols::Comparison& comparison) {
+results::Cell level_of(const std::vector<results::AlternativeRow>& alternatives,
+                       const protocols::Comparison& comparison) {
   const auto compared =
-      std::ranges::find(answer.alternatives, true, &results::AlternativeRow::is_comparison);
+      std::ranges::find(alternatives, true, &results::AlternativeRow::is_comparison);
+  if (compared == alternatives.end()) {
+    return {};
+  }
   const auto value = compared->axis_values.find(comparison.axis);
   return value == compared->axis_values.end() ? results::Cell{}
                                               : results::Cell{comparison.level_of(value->second)};
@@ -196,13 +200,15 @@ results::Table tracks_table(const protocols::Protocol& protocol, results::Store&
   std::ranges::stable_sort(answers, {}, &results::AnswerRow::trial_id);
   ReplayedTracks replayed{protocol, store};
   replayed.set_tracks(answers);
+  const results::AlternativesOfTrials alternatives = store.alternatives();
   TracksSoFar tracks;
   std::vector<results::Row> rows;
   for (const results::AnswerRow& answer : answers) {
     if (answer.track) {
       rows.push_back(
           {answer.trial_id, answer.participant_id, answer.block, std::int64_t{answer.number},
-           std::int64_t{*answer.track}, level_of(answer, *protocol.block(answer.block).comparison),
+           std::int64_t{*answer.track},
+           level_of(alternatives.at(answer.trial_id), *protocol.block(answer.block).comparison),
            answer.is_correct ? results::Cell{std::int64_t{*answer.is_correct}} : results::Cell{},
            std::int64_t{is_reversal(replayed.blocks_of(answer.participant_id), answer, tracks)}});
     }
@@ -219,8 +225,8 @@ using results::Mode;
 using Excluded = std::map<std::string, std::string>;  // by id: why
 
 // The participants who were not excluded.
-std::set<std::string> participants_of(const std::vector<results::SessionRow>& sessions,
-                                      const Excluded& excluded, Mode mode) {
+std::set<std::string> counted_participants(const std::vector<results::SessionRow>& sessions,
+                                           const Excluded& excluded, Mode mode) {
   std::set<std::string> participants;
   for (const results::SessionRow& session : sessions) {
     if (session.mode == mode && !excluded.contains(session.participant_id)) {
@@ -366,7 +372,7 @@ void append(std::vector<Row>& all, std::vector<Row> more) {
 }  // namespace
 
 std::set<std::string> participants_of(results::Store& store, Mode mode) {
-  return participants_of(store.sessions(), store.excluded_participants(), mode);
+  return counted_participants(store.sessions(), store.excluded_participants(), mode);
 }
 
 StoredResults stored_results(results::Store& store, const protocols::Protocol& protocol, Mode mode,
@@ -387,7 +393,7 @@ StoredResults stored_results(results::Store& store, const protocols::Protocol& p
   std::erase_if(found.visits, [&](const results::VisitRow& visit) {
     return !answering.contains(visit.participant_id);
   });
-  const std::set<std::string> participants = participants_of(found.sessions, excluded, mode);
+  const std::set<std::string> participants = counted_participants(found.sessions, excluded, mode);
   const auto without_part = who_took_no_part(store, protocol, participants);
   found.unfinished = unfinished(store, protocol, participants, without_part);
   found.excluded = excluded_of(excluded, found.sessions, mode);

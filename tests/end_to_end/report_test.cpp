@@ -406,7 +406,8 @@ TEST_CASE("an export says which of interleaved staircases chose each level", "[e
        "    turned.append(bool(move and last and move != last))\n"
        "    told.append(is_reversal)\n"
        "    last = move or last\n"
-       "print(turned == told, sum(told) > 3, sorted(set(p[2] for t in tracks.values() for p in t)))\n",
+       "print(turned == told, sum(told) > 3, sorted(set(p[2] for t in tracks.values() for p in "
+       "t)))\n",
        (directory / "e") + "/tracks.csv", study + "/report/damping_tracks.csv"});
   INFO(both.standard_error);
   CHECK(both.standard_output == "True 2\nTrue True ['0', '1']\n");

@@ -9,9 +9,9 @@
 
 #include "core/error.hpp"
 #include "core/files/output_files.hpp"
-#include "core/files/sha256.hpp"
 #include "core/text/plain_text.hpp"
 #include "runner/build_info/build_info.hpp"
+#include "runner/session/engine/session_row.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 using Json = nlohmann::ordered_json;
@@ -94,9 +94,10 @@ ShareFile share_from_json(const Json& json) {
 }  // namespace
 
 SharedSimulation shared_simulation(const Share& share, const protocols::Protocol& protocol) {
-  std::string inputs = core::sha256(protocol.text);
-  for (const protocols::SurfaceSource& surface : protocol.surfaces) {
-    inputs += " " + surface.sha256;
+  const results::StudyRow study = study_row(protocol, "");
+  std::string inputs = study.protocol_sha256;
+  for (const results::SurfaceRow& file : study.surfaces) {
+    inputs += " " + file.sha256;
   }
   return {.share = share,
           .inputs = inputs,

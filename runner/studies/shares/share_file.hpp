@@ -26,7 +26,7 @@ struct SharedSimulation {
   int studies{};  // 0: it is one study, in a store of its own
   std::uint64_t seed{};
   bool keeps_traces{};
-  std::string inputs;   // hashes of the protocol and of its surfaces
+  std::string inputs;   // hashes of the protocol and of the files that it names
   std::string program;  // version, commit and compiler
 };
 SharedSimulation shared_simulation(const Share& share, const protocols::Protocol& protocol);

@@ -284,7 +284,7 @@ lines = [line.rstrip("\n").split("\t") for line in open(sys.argv[2])]
 sent = [(float(monotonic_s), f"{state} {trial} {detail}".rstrip())
         for _, state, trial, detail, monotonic_s, _ in lines]
 received = [line.rstrip("\n").split("\t") for line in open(sys.argv[1])]
-markers = [(float(at_s), text.rstrip()) for kind, at_s, text, *_ in received if kind == "marker"]
+markers = [(float(row[1]), row[2].rstrip()) for row in received if row[0] == "marker"]
 # the first ones may be sent before anybody has connected, and none later is lost
 assert len(markers) > 30 and [text for _, text in markers] == [text for _, text in sent[-len(markers):]]
 for (here, text), (there, _) in zip(markers, sent[-len(markers):]):

@@ -515,7 +515,7 @@ TEST_CASE("who declines is stored as such and nothing else, and leaves the order
   INFO(declined.standard_error);
   CHECK(declined.exit_code == 0);
   CHECK_THAT(declined.standard_output, Contains("takes no part: answered declined to 'agree'"));
-  CHECK_THAT(declined.standard_output, Contains("[picture: Two plates to tap]\n"));
+  CHECK_THAT(declined.standard_error, Contains("[picture: Two plates to tap]\n"));
   CHECK(sql(directory, "SELECT item, answer FROM form_answer") == "agree|declined\n");
   CHECK(sql(directory, "SELECT count(*) FROM trial") == "0\n");
   CHECK(sql(directory, "SELECT state, detail FROM session_event ORDER BY rowid DESC LIMIT 1") ==

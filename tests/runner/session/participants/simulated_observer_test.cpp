@@ -329,11 +329,12 @@ double as_level_db(double fraction) {
   return 20.0 * std::log10(1.0 + fraction);
 }
 
-// The mean threshold of participants, as a level.
+// The threshold of participants who are all alike, as a level: of one fit of them all, since that
+// of each is drawn down by the lapses that it could have.
 double threshold_db(double internal_noise_db, const std::string& values, int participants = 10) {
   const std::string constant = fmt::format("{{constant: {{values: {}, repetitions: 24}}}}", values);
   const auto block = reported(internal_noise_db, constant, participants);
-  return as_level_db(block->main_results.at(0).estimate);
+  return as_level_db(block->as_json().at("population").at(0).at("threshold").get<double>());
 }
 
 struct Recovered {

@@ -27,7 +27,7 @@ CREATE TABLE study (
   protocol_sha256 TEXT NOT NULL,
   created_utc TEXT NOT NULL
 ) STRICT;
-CREATE TABLE surface (              -- and the pictures that participants are shown
+CREATE TABLE surface (
   file TEXT PRIMARY KEY,            -- as the protocol names it
   sha256 TEXT NOT NULL,             -- of the file as it was
   size INTEGER NOT NULL,            -- in bytes, before compression

@@ -358,7 +358,10 @@ TEST_CASE("a study that has begun has the repaired surface that it stored",
   const protocols::Protocol began =
       protocol_with("repair: {largest_hole_m: 2}", open_tetrahedron());
   std::vector<std::string> asked_for;
-  const protocols::ReadFile of_contents = [](const std::string&) { return open_tetrahedron(); };
+  const protocols::ReadFile of_contents = [](const std::string& name) {
+    return name == "plates.svg" ? testing::contents(testing::source("tests/data/plates.svg"))
+                                : open_tetrahedron();
+  };
   const protocols::ReadFile of_repaired = [&](const std::string& name) {
     asked_for.push_back(name);
     return testing::replaced(began.surfaces[1].bytes, "\n-0.1 0.173 ", "\n-0.1 0.174 ");

@@ -52,8 +52,11 @@ TEST_CASE("wording, labels, instructions, notes and translations are texts, give
 TEST_CASE("what can be answered, presented or stored is data, whatever its words are",
           "[protocols][texts]") {
   const auto [what, by, key] = GENERATE(
-      Change{"options: [left, right], ends_session: [left]",
-             "options: [lefty, right], ends_session: [lefty]", "forms.about.items[1].options[0]"},
+      Change{"options: [left, right], option_pictures: [{file: plates.svg, text: A left hand}, "
+             "{file: plates.svg, text: A right hand}], ends_session: [left]",
+             "options: [lefty, right], option_pictures: [{file: plates.svg, text: A left hand}, "
+             "{file: plates.svg, text: A right hand}], ends_session: [lefty]",
+             "forms.about.items[1].options[0]"},
       Change{", tie: {en: neither, ja: 同じ}", "", "blocks[12].tie"},
       Change{"max: 99", "max: 98", "forms.about.items[0].max"},
       Change{"    repetitions: 2\n", "    repetitions: 3\n", "blocks[0].repetitions"},

@@ -230,6 +230,19 @@ std::string made_of(const RepeatedMode& mode, const RepeatedMode& one, const Rep
                                                        : std::string{};
 }
 
+std::string made_with(const RepeatedMode& mode, const RepeatedMode& one,
+                      const std::vector<RepeatedMode>& modes,
+                      const std::function<bool(const RepeatedMode&)>& takes_part) {
+  for (const RepeatedMode& other : modes) {
+    if (takes_part(other)) {
+      if (std::string made = made_of(mode, one, other, modes); !made.empty()) {
+        return made;
+      }
+    }
+  }
+  return {};
+}
+
 std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedMode>& modes,
                            int derivatives, const std::function<bool(std::size_t)>& moves_as) {
   const auto is_stronger = [&](const RepeatedMode& other) {
@@ -242,13 +255,12 @@ std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedM
   };
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const RepeatedMode& one = modes[i];
-    for (const RepeatedMode& other : modes) {
-      const bool is_strong =
-          &one == &other || ((is_stronger(other) || modulates(other)) && moves_as(i));
-      if (is_stronger(one) && is_strong) {
-        if (std::string made = made_of(mode, one, other, modes); !made.empty()) {
-          return made;
-        }
+    const auto takes_part = [&](const RepeatedMode& other) {
+      return &one == &other || ((is_stronger(other) || modulates(other)) && moves_as(i));
+    };
+    if (is_stronger(one)) {
+      if (std::string made = made_with(mode, one, modes, takes_part); !made.empty()) {
+        return made;
       }
     }
   }

@@ -47,7 +47,7 @@ class LatenessCount {
   // Where the quantile of all ticks lies, of which these are a sample, with 95 %: between two of
   // the sample's own.
   struct Interval {
-    Nanoseconds low;
+    Nanoseconds low{};
     std::optional<Nanoseconds> high;  // unset: so few ticks do not tell
   };
   Interval interval_of_quantile(double share) const noexcept;

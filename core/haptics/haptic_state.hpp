@@ -46,6 +46,7 @@ using Vec3 = Eigen::Vector3d;
 
 // The haptic interaction point (HIP): what the device reported this tick, or the same seen in the
 // plate frame.
+// A vector that is initialised by {} has no value, unlike these defaults.
 struct HandState {
   Vec3 position_m{Vec3::Zero()};
   Vec3 velocity_m_s{Vec3::Zero()};

@@ -277,7 +277,8 @@ class TapSorter {
         static_cast<double>(std::ranges::count_if(
             tap.ticks, [](const analysis::TracedTick& tick) { return tick.is_touching; })) /
         protocol_.rate_hz;
-    const core::HandState hand{{tap.position_m[0], tap.position_m[1], tap.position_m[2]}, {}};
+    const core::HandState hand{{tap.position_m[0], tap.position_m[1], tap.position_m[2]},
+                               core::Vec3::Zero()};
     const Eigen::Vector2d at_m = placement_.to_plate(hand).position_m.head<2>();
     const auto distance_m = [&](const analysis::PointTaps& point) {
       return (protocol_.tapping_points_m.at(point.point) - at_m).norm();

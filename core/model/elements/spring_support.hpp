@@ -32,7 +32,7 @@ struct FreeDofs;
 // Springs between a region of the body and the ground, along the axes of the plate frame.
 struct SpringSupport {
   SurfaceRegion region;
-  Eigen::Vector3d stiffness_n_per_m{};  // of the whole region; >= 0
+  Eigen::Vector3d stiffness_n_per_m{Eigen::Vector3d::Zero()};  // of the whole region; >= 0
 };
 
 // Adds the springs to K (lower triangle, of the free degrees of freedom). They hold the region's

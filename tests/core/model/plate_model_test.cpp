@@ -227,7 +227,7 @@ TEST_CASE("a plate on soft feet sags under the finger as its springs say",
     renderer.tick({{0.0, 0.0, 1e-4}, {0.0, 0.0, -0.1}});
     double force_n = 0.0;
     for (int tick = 0; tick < 4000; ++tick) {
-      force_n = renderer.tick({{0.0, 0.0, -0.002}, {}}).force_n.z();
+      force_n = renderer.tick({{0.0, 0.0, -0.002}, core::Vec3::Zero()}).force_n.z();
     }
     // the contact's stiffness in series with four springs
     const double contact = settings.penalty_stiffness_n_per_m;

@@ -26,7 +26,7 @@ TEST_CASE("at rest on a heavy plate every technique renders the contact spring's
       renderer.tick({{0.0, 0.0, 1e-4}, {0.0, 0.0, -0.3}});
       double force_n = 0.0;
       for (int tick = 0; tick < 10'000; ++tick) {
-        force_n = renderer.tick({{0.0, 0.0, -0.001}, {}}).force_n.z();
+        force_n = renderer.tick({{0.0, 0.0, -0.001}, Vec3::Zero()}).force_n.z();
       }
       INFO(technique.name << " " << finger_n_per_m);
       CHECK(force_n == Approx(3.0).epsilon(1e-6));

@@ -470,7 +470,7 @@ TEST_CASE("rendering a coupled finger allocates nothing", "[core][coupled][realt
                                        PlateFace{0.3, 0.3}, &plate);
   const testing::AllocationCount allocations;
   for (int tick = 0; tick < 10'000; ++tick) {
-    renderer.tick({{0.0001 * (tick % 1000), 0.0, 0.002 * std::sin(0.05 * tick)}, {}});
+    renderer.tick({{0.0001 * (tick % 1000), 0.0, 0.002 * std::sin(0.05 * tick)}, Vec3::Zero()});
   }
   CHECK(allocations.count() == 0);
 }

@@ -160,7 +160,7 @@ TEST_CASE("nothing is felt off the plate", "[core][technique][safety]") {
                                        PlateFace{0.3, 0.3}, &tapped_plate());
   renderer.tick({{0.0, 0.0, 0.001}, {0.0, 0.0, -1.0}});
   renderer.tick({{0.0, 0.0, -0.001}, {0.0, 0.0, -1.0}});
-  CHECK(renderer.tick({{0.0, 0.0, 0.0001}, {}}).force_n == Vec3::Zero());
+  CHECK(renderer.tick({{0.0, 0.0, 0.0001}, Vec3::Zero()}).force_n == Vec3::Zero());
 }
 
 TEST_CASE("rendering allocates nothing", "[core][technique][realtime]") {
@@ -168,7 +168,7 @@ TEST_CASE("rendering allocates nothing", "[core][technique][realtime]") {
                                        PlateFace{0.3, 0.3}, &tapped_plate());
   const testing::AllocationCount allocations;
   for (int tick = 0; tick < 10'000; ++tick) {
-    renderer.tick({{0.0001 * (tick % 1000), 0.0, 0.002 * std::sin(0.05 * tick)}, {}});
+    renderer.tick({{0.0001 * (tick % 1000), 0.0, 0.002 * std::sin(0.05 * tick)}, Vec3::Zero()});
   }
   CHECK(allocations.count() == 0);
 }

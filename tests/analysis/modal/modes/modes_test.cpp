@@ -583,9 +583,9 @@ TEST_CASE("a part of a mode is none again by what overlaps it", "[analysis][moda
                                   certain_mode(312.0, 0.012, 0.14)};
   join_resonances(decays, modes);
   CHECK(modes[0].standing == Standing::agreed);
-  for (const std::size_t part : {1, 2}) {
-    CHECK(modes[part].standing == Standing::doubtful);
-    CHECK_THAT(modes[part].why, Contains("300 Hz"));
+  for (const RepeatedMode& part : {modes[1], modes[2]}) {
+    CHECK(part.standing == Standing::doubtful);
+    CHECK_THAT(part.why, Contains("300 Hz"));
   }
 }
 

@@ -12,7 +12,6 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr int max_iterations = 300;
-constexpr double smallest_gain = 1e-12;  // of the log-likelihood
 constexpr double most_damping = 1e12;
 
 bool is_held(const PsychometricBox& box, const PsychometricVector& at,
@@ -40,7 +39,7 @@ Eigen::Matrix4d remove_fixed_parameters(const BinomialLikelihood::Slopes& slopes
 }  // namespace
 
 Maximum local_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                      const PsychometricVector& start) {
+                      const PsychometricVector& start, double smallest_gain) {
   Maximum best{start.cwiseMax(box.low).cwiseMin(box.high), 0.0};
   best.log_likelihood = likelihood.value(best.at);
   double damping = 1e-3;
@@ -242,8 +241,10 @@ PsychometricVector likeliest_position(const BinomialLikelihood& likelihood,
                                       double lapse) {
   Maximum best{{positions.front(), slope, box.low[guess_at], lapse},
                -std::numeric_limits<double>::infinity()};  // if impossible at every position
+  const bool is_guess_free = box.low[guess_at] < box.high[guess_at];
+  const std::vector<double> shares = is_guess_free ? std::vector{0.1, 0.5} : std::vector{0.0};
   for (const double position : positions) {
-    for (const double share : {0.1, 0.5}) {
+    for (const double share : shares) {
       const double guess = box.low[guess_at] + share * (box.high[guess_at] - box.low[guess_at]);
       const PsychometricVector at =
           PsychometricVector{position, slope, guess, lapse}.cwiseMax(box.low).cwiseMin(box.high);
@@ -274,14 +275,15 @@ Maximum global_maximum(const BinomialLikelihood& likelihood, const PsychometricB
                        const std::vector<PsychometricVector>& further_starts) {
   std::vector<PsychometricVector> starts = starts_of(likelihood, box);
   starts.insert(starts.end(), further_starts.begin(), further_starts.end());
+  constexpr double rough_gain = 1e-6;  // tells the maxima apart; the greatest is climbed to the end
   Maximum best{starts.front(), -std::numeric_limits<double>::infinity()};
   for (const PsychometricVector& start : starts) {
-    const Maximum found = local_maximum(likelihood, box, start);
+    const Maximum found = local_maximum(likelihood, box, start, rough_gain);
     if (found.log_likelihood > best.log_likelihood) {
       best = found;
     }
   }
-  return refined(likelihood, box, best);
+  return refined(likelihood, box, local_maximum(likelihood, box, best.at));
 }
 
 PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vector<Level>& levels) {

@@ -17,9 +17,10 @@ struct Maximum {
 };
 
 // A local maximum of the likelihood within the box, from a start in it: Fisher scoring with
-// Levenberg's damping; parameters at a bound that the score points out of rest.
+// Levenberg's damping, until a step gains less of the log-likelihood; parameters at a bound that
+// the score points out of rest.
 Maximum local_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                      const PsychometricVector& start);
+                      const PsychometricVector& start, double smallest_gain = 1e-12);
 // The same to ten digits, by its score: a likelihood is so flat there that its values tell seven.
 Maximum refined(const BinomialLikelihood& likelihood, const PsychometricBox& box,
                 const Maximum& rough);

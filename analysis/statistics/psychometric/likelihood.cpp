@@ -168,14 +168,13 @@ BinomialLikelihood::BinomialLikelihood(core::PsychometricShape shape, std::vecto
                                        Rates rates)
     : shape_{shape}, levels_{std::move(levels)}, rates_{rates} {}
 
-double BinomialLikelihood::shape_value(double x, double threshold, double log_slope) const {
-  return core::shape_value(shape_, x, from_axis(shape_, threshold), std::exp(log_slope));
-}
-
 std::vector<double> BinomialLikelihood::shape_values(const PsychometricVector& at) const {
+  const double threshold = from_axis(shape_, at[threshold_at]);
+  const double slope = std::exp(at[log_slope_at]);
   std::vector<double> values;
+  values.reserve(levels_.size());
   for (const Level& level : levels_) {
-    values.push_back(shape_value(level.value, at[threshold_at], at[log_slope_at]));
+    values.push_back(core::shape_value(shape_, level.value, threshold, slope));
   }
   return values;
 }

@@ -67,7 +67,6 @@ class BinomialLikelihood {
   core::PsychometricShape shape() const { return shape_; }
 
  private:
-  double shape_value(double x, double threshold, double log_slope) const;
   core::PsychometricShape shape_;
   std::vector<Level> levels_;
   Rates rates_;

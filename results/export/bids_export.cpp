@@ -121,9 +121,7 @@ class Dataset {
     write_behaviour();
     write_events();
     write_tasks();
-    for (const std::int64_t trial : study_->trials) {
-      write_recording(trial);
-    }
+    each_traced_trial(*study_, [&](std::int64_t trial) { write_recording(trial); });
     core::write_new_file(root_ / "README", readme());
   }
 

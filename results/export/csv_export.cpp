@@ -83,12 +83,12 @@ void write_traces(const fs::path& directory, Store& store, const StudyExport& st
     return;
   }
   core::make_directories((directory / "traces").string());
-  for (const std::int64_t trial : study.trials) {
+  each_traced_trial(study, [&](std::int64_t trial) {
     const Table trace = trace_table(store, trial);
     const std::string name = "traces/" + trace.name + ".csv";
     write_table(directory / name, trace);
     files.push_back({name, trace.description, trace_schema, {}});
-  }
+  });
   core::write_new_file(directory / trace_schema, csvw_schema(trace_columns()));
 }
 }  // namespace

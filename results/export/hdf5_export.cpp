@@ -321,9 +321,8 @@ void write_hdf5_file(const std::string& name, Store& store, const StudyExport& s
     add_table(file, table);
   }
   file.add_group("/traces");
-  for (const std::int64_t trial : study.trials) {
-    add_trace(file, trace_table(store, trial), trial);
-  }
+  each_traced_trial(study,
+                    [&](std::int64_t trial) { add_trace(file, trace_table(store, trial), trial); });
   file.close();
 }
 }  // namespace tapstudy::results

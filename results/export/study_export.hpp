@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/model/progress.hpp"
 #include "results/export/table.hpp"
 #include "results/store/store.hpp"
 namespace tapstudy::results {
@@ -64,7 +66,9 @@ struct StudyExport {
   std::vector<std::int64_t> trials;  // whose traces are written: each must have one
   // Written beside the CSV tables as they are: name and text.
   std::vector<std::pair<std::string, std::string>> further_files{};
+  core::CountHook count{};  // of traces written
 };
+void each_traced_trial(const StudyExport& study, const std::function<void(std::int64_t)>& write);
 
 // Fills a directory: a file NAME.csv a table, csv-metadata.json (csv_export.cpp), protocol.yaml,
 // further files, and of each trial that has a trace traces/trial_000001.csv. Throws InvalidInput

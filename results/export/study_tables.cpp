@@ -198,6 +198,13 @@ Row row_from(Statement& statement, const std::vector<Column>& columns) {
   return row;
 }
 
+void each_traced_trial(const StudyExport& study, const std::function<void(std::int64_t)>& write) {
+  for (std::size_t i = 0; i < study.trials.size(); ++i) {
+    write(study.trials[i]);
+    core::tell_count(study.count, i + 1, study.trials.size());
+  }
+}
+
 std::vector<std::int64_t> trials_with_traces(Store& store) {
   std::vector<std::int64_t> trials;
   store.each_row("SELECT DISTINCT trial_id FROM trace_chunk ORDER BY trial_id",

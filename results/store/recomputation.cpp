@@ -230,12 +230,14 @@ class Comparison {
 };
 }  // namespace
 
-Recomputation recompute(Store& store, const TaskRule& rule) {
+Recomputation recompute(Store& store, const TaskRule& rule, const core::CountHook& count) {
   Comparison comparison{store, rule};
   AlternativesOfTrials alternatives = store.alternatives();
   comparison.note_lost_references();
-  for (const StoredTrial& trial : stored_trials(store)) {
-    comparison.compare(trial, alternatives[trial.id]);
+  const std::vector<StoredTrial> trials = stored_trials(store);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    comparison.compare(trials[i], alternatives[trials[i].id]);
+    core::tell_count(count, i + 1, trials.size());
   }
   return comparison.result();
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/progress.hpp"
 #include "results/store/store.hpp"
 namespace tapstudy::results {
 // The rule of a task for an answer: right, wrong, or (unset) neither. Not called for trials whose
@@ -38,5 +39,5 @@ struct Recomputation {
   std::int64_t answers{};         // held against the rule
   std::int64_t unknown_blocks{};  // answers of blocks that the rule does not know
 };
-Recomputation recompute(Store& store, const TaskRule& rule);
+Recomputation recompute(Store& store, const TaskRule& rule, const core::CountHook& count = {});
 }  // namespace tapstudy::results

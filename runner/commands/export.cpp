@@ -158,6 +158,8 @@ void run_export(const ExportOptions& options) {
     if (format.always_has_traces || options.wants_traces) {
       study.trials = results::trials_with_traces(store);
     }
+    Progress progress{"writing " + options.out};
+    study.count = progress.count();
     format.write(options.out, store, study);
   });
   fmt::print("{}\n", options.out);

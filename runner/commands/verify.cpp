@@ -311,7 +311,8 @@ std::string print_published(const PublishedReport& report) {
 
 void verify(const VerifyOptions& options) {
   results::Store store = results::Store::open_existing(options.directory);
-  const Verification found = verification_of(store, options.directory);
+  Progress progress{"verifying " + options.directory};
+  const Verification found = verification_of(store, options.directory, progress.count());
   fmt::print("study.db         {} trials, {} answers, {} ticks: sound\n", found.trials,
              found.answers, found.recomputed.ticks);
   for (const std::string& remark : found.remarks) {

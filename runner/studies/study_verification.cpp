@@ -108,11 +108,12 @@ bool Verification::is_sound() const {
          not_in_journal.empty() && not_in_database.empty() && journal_fault.empty();
 }
 
-Verification verification_of(results::Store& store, const std::string& directory) {
+Verification verification_of(results::Store& store, const std::string& directory,
+                             const core::CountHook& count) {
   Verification found;
   const results::StudyRow study = store.study();
   const std::optional<protocols::Protocol> protocol = protocol_of(store, found.remarks);
-  found.recomputed = results::recompute(store, rule_of(protocol));
+  found.recomputed = results::recompute(store, rule_of(protocol), count);
   found.broken = results::broken_rules(store);
   if (protocol) {
     check_by_protocol(store, *protocol, found);

@@ -25,5 +25,6 @@ struct Verification {
   bool is_sound() const;
 };
 // Throws StoreError where the database cannot be read.
-Verification verification_of(results::Store& store, const std::string& directory);
+Verification verification_of(results::Store& store, const std::string& directory,
+                             const core::CountHook& count = {});
 }  // namespace tapstudy::runner

@@ -4,7 +4,9 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -19,6 +21,14 @@ void set_up_logging() {
 
 void warn(const std::string& what) {
   spdlog::warn("{}", what);
+}
+
+std::string describe_count(std::size_t done, std::size_t all, double elapsed_s) {
+  const double left_s = elapsed_s * static_cast<double>(all - done) /
+                        static_cast<double>(std::max<std::size_t>(done, 1));
+  return fmt::format(
+      "{} of {}{}", done, all,
+      done > 0 && done < all ? fmt::format(", about {:.0f} s left", std::ceil(left_s)) : "");
 }
 
 class Progress::Speaker {
@@ -84,6 +94,12 @@ core::ProgressHook Progress::hook() {
   return [this](std::string_view stage) {
     speaker_->set(prefix_.empty() ? std::string{stage} : fmt::format("{}, {}", prefix_, stage));
     stop_if_asked();
+  };
+}
+
+core::CountHook Progress::count() {
+  return [tell = hook(), time = core::Stopwatch{}](std::size_t done, std::size_t all) {
+    tell(describe_count(done, all, time.elapsed_s()));
   };
 }
 }  // namespace tapstudy::runner

@@ -8,6 +8,9 @@ namespace tapstudy::runner {
 void set_up_logging();
 void warn(const std::string& what);
 
+// "12 of 200, about 34 s left", at the pace so far.
+std::string describe_count(std::size_t done, std::size_t all, double elapsed_s);
+
 // Progress messages on stderr: none in the first second, then the activity and elapsed time. What
 // begins while another one talks is a stage of that one, so that there is one line at a time.
 class Progress {
@@ -19,6 +22,8 @@ class Progress {
 
   // Receives the stages of a computation, and cancels it if the operator asked to stop.
   core::ProgressHook hook();
+  // Receives how many of its parts are done, and cancels it likewise. May be called by any thread.
+  core::CountHook count();
 
  private:
   class Speaker;

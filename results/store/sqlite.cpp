@@ -242,24 +242,20 @@ std::vector<std::byte> Statement::bytes(int column) {
 }
 
 Transaction::Transaction(Database& database)
-    : database_{&database}, is_open_{!database.is_in_transaction()} {
-  if (is_open_) {
-    database.run("BEGIN IMMEDIATE");
-  }
+    : database_{&database}, is_part_{database.is_in_transaction()} {
+  database.run(is_part_ ? "SAVEPOINT part" : "BEGIN IMMEDIATE");
 }
 Transaction::~Transaction() {
   if (!is_open_) {
     return;
   }
   try {
-    database_->run("ROLLBACK");
+    database_->run(is_part_ ? "ROLLBACK TO part; RELEASE part" : "ROLLBACK");
   } catch (const StoreError&) {  // NOLINT(bugprone-empty-catch): SQLite has rolled back by itself
   }
 }
 void Transaction::commit() {
-  if (is_open_) {
-    database_->run("COMMIT");
-    is_open_ = false;
-  }
+  database_->run(is_part_ ? "RELEASE part" : "COMMIT");
+  is_open_ = false;
 }
 }  // namespace tapstudy::results

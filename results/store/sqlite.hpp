@@ -113,7 +113,7 @@ class Statement {
 };
 
 // Begins here; rolled back at the end of the scope unless committed. Within another transaction it
-// is a part of that one.
+// is a part of that one, which goes on without it where it is rolled back.
 class Transaction {
  public:
   explicit Transaction(Database& database);
@@ -124,6 +124,7 @@ class Transaction {
 
  private:
   Database* database_;
-  bool is_open_;
+  bool is_part_;
+  bool is_open_{true};
 };
 }  // namespace tapstudy::results

@@ -40,8 +40,10 @@ class Store {
   static Store from_journal(const std::string& directory);
   static bool has_database(const std::string& directory);
   static bool has_journal(const std::string& directory);
-  // Until resume_sync(), nothing waits for the disk and nothing is read back. A power cut may
-  // damage the file: only for new studies of simulated participants, which their seed reproduces.
+  // Until resume_sync(), trials are committed and journalled some dozens at a time, nothing waits
+  // for the disk and nothing is read back. A killed program loses trials that were added, and a
+  // power cut may damage the file: only for new studies of simulated participants, which their
+  // seed reproduces.
   void suspend_sync();
   void resume_sync();
   // Leaves a writer's database as a single file, without the WAL files.
@@ -138,6 +140,9 @@ class Store {
   void insert_trial(const TrialRecord& record);
   void rewrite_database();
   void check_is_in_place(const TrialRow& trial);
+  void add_to_batch(const TrialRecord& record);
+  void check_batch_is_open();
+  void commit_batch();
   void add_to_journal(const TrialRecord& record);
   void journal_failed_calls();
   void journal(const std::vector<SessionRow>& sessions_of_entries, const JournalEntries& entries);
@@ -174,6 +179,12 @@ class Store {
   std::optional<Journal> journal_;
   std::optional<std::string> changed_protocol_text_;  // of the sessions that this one adds
   bool confirms_{true};
+  // Of the open transaction while nothing is confirmed.
+  struct Batch {
+    int trials{0};
+    std::vector<JournalledAnswer> answers;
+  };
+  Batch batch_;
   std::optional<std::array<std::int64_t, 3>> unconfirmed_;  // a trial that is committed, no more
   // Committed by a call that then failed.
   struct FailedCall {

@@ -281,6 +281,7 @@ void Store::suspend_sync() {
 }
 
 void Store::resume_sync() {
+  commit_batch();
   confirms_ = true;
   database_.run("PRAGMA synchronous = FULL");
   static_cast<void>(database_.checkpoint());

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "results/store/store.hpp"
 #include "results/store_error.hpp"
@@ -183,6 +184,10 @@ void Store::add_session(SessionRow& session) {
 }
 
 SaveOutcome Store::add_trial(const TrialRecord& record) {
+  if (!confirms_) {
+    add_to_batch(record);
+    return SaveOutcome::partly_in_log;
+  }
   const TrialRow& trial = record.trial;
   const std::array<std::int64_t, 3> key{trial.session_id, trial.number, trial.attempt};
   if (unconfirmed_ != key) {
@@ -190,7 +195,7 @@ SaveOutcome Store::add_trial(const TrialRecord& record) {
     unconfirmed_ = key;
   }
   bool is_in_one_file = true;
-  if (journal_ && confirms_) {
+  if (journal_) {
     is_in_one_file = database_.checkpoint();
     check_is_in_place(trial);
   }
@@ -199,9 +204,63 @@ SaveOutcome Store::add_trial(const TrialRecord& record) {
   return is_in_one_file ? SaveOutcome::in_one_file : SaveOutcome::partly_in_log;
 }
 
+namespace {
+// Whether the journal records it.
+bool is_answered(const TrialRecord& record) {
+  return record.response && record.trial.status == TrialStatus::answered;
+}
+}  // namespace
+
+// A transaction a trial would cost more than the trial's rows.
+void Store::add_to_batch(const TrialRecord& record) {
+  constexpr int most_trials = 40;
+  if (batch_.trials == 0) {
+    database_.run("BEGIN IMMEDIATE");
+  }
+  check_batch_is_open();
+  insert_trial(record);
+  if (is_answered(record)) {
+    batch_.answers.push_back({record.trial, record.alternatives, *record.response});
+  }
+  if (++batch_.trials == most_trials) {
+    commit_batch();
+  }
+}
+
+// Where a write fails for want of space, SQLite rolls the whole transaction back by itself.
+void Store::check_batch_is_open() {
+  if (!database_.is_in_transaction()) {
+    throw StoreError{
+        fmt::format("{}: {} trials were lost when writing failed (delete the study and simulate it "
+                    "again)",
+                    database_.file(), batch_.trials)};
+  }
+}
+
+// What is rolled back must not be in the journal.
+void Store::commit_batch() {
+  if (batch_.trials > 0) {
+    check_batch_is_open();
+    database_.run("COMMIT");
+  }
+  const Batch batch = std::exchange(batch_, {});
+  if (!journal_ || batch.answers.empty()) {
+    return;
+  }
+  std::set<std::int64_t> ids;
+  for (const JournalledAnswer& answer : batch.answers) {
+    ids.insert(answer.trial.session_id);
+  }
+  std::vector<SessionRow> sessions;
+  for (const std::int64_t id : ids) {
+    sessions.push_back(session_of(id));
+  }
+  journal(sessions, {.answers = batch.answers});
+}
+
 void Store::add_to_journal(const TrialRecord& record) {
   journal_failed_calls();
-  if (journal_ && record.response && record.trial.status == TrialStatus::answered) {
+  if (journal_ && is_answered(record)) {
     journal({session_of(record.trial.session_id)},
             {.answers = {{record.trial, record.alternatives, *record.response}}});
   }
@@ -416,6 +475,7 @@ void Store::journal_failed_calls() {
 // The call that is made again for rows that are in the database finds them and inserts nothing.
 void Store::add_and_journal(JournalEntries entries, std::int64_t session_id,
                             const std::function<void(JournalEntries&)>& insert) {
+  commit_batch();
   const std::vector<std::string> what = to_lines(entries);
   if (std::ranges::find(failed_calls_, what, &FailedCall::lines) == failed_calls_.end()) {
     Transaction all{database_};

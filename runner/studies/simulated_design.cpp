@@ -91,12 +91,13 @@ std::vector<ResultsOfStudy> simulate_design(const SimulatedDesign& design,
       fmt::format("simulating {} studies of {} participants", results.size(), design.participants)};
   ModelLibrary models;
   models.build_all(protocol);
-  std::atomic<int> done{0};
+  std::atomic<std::size_t> done{0};
+  const core::CountHook count = progress.count();
   analysis::parallel_for(results.size(), 0, [&](std::size_t i) {
     stop_if_asked();
     results[i] =
         results_of(summary_of_one(design, part.first + static_cast<int>(i), protocol, models));
-    progress.hook()(fmt::format("{} done", ++done));
+    count(++done, results.size());
   });
   return results;
 }

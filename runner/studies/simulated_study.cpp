@@ -18,6 +18,7 @@
 #include "protocols/schedule/schedule.hpp"
 #include "results/store/recorder.hpp"
 #include "results/store/store.hpp"
+#include "results/store_error.hpp"
 #include "runner/session/devices/rigs.hpp"
 #include "runner/session/engine/open_study.hpp"
 #include "runner/session/engine/session_row.hpp"
@@ -155,12 +156,16 @@ void run_participants(const SharedParts& shared, const std::vector<SimulatedSess
   if (!shared.study.progress.empty()) {
     progress.emplace(shared.study.progress);
   }
+  const core::CountHook count = progress ? progress->count() : core::CountHook{};
+  std::atomic<std::size_t> done{0};
   results::Recorder recorder{store};
   // one more than there are processors: each waits while its trial is stored
   const unsigned all = std::max(1U, std::thread::hardware_concurrency()) + 1;
-  analysis::parallel_for(
-      participants.size(), shared.study.threads > 0 ? shared.study.threads : all,
-      [&](std::size_t i) { run_participant(shared, participants[i], recorder, tapped); });
+  analysis::parallel_for(participants.size(), shared.study.threads > 0 ? shared.study.threads : all,
+                         [&](std::size_t i) {
+                           run_participant(shared, participants[i], recorder, tapped);
+                           core::tell_count(count, ++done, participants.size());
+                         });
 }
 }  // namespace
 
@@ -189,7 +194,10 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   try {
     run_participants({study, protocol, settings, models}, participants, store, tapped);
   } catch (...) {
-    store.resume_sync();
+    try {
+      store.resume_sync();
+    } catch (const results::StoreError&) {  // NOLINT(bugprone-empty-catch): the first says why
+    }
     throw;
   }
   store.resume_sync();

@@ -146,6 +146,7 @@ class ChangedStudy {
       : protocol_{write_protocol()}, store_{results::Store::open_or_create(path(), row())} {
     store_.suspend_sync();
     add_person(protocol_, store_);
+    store_.resume_sync();
     store_.query("PRAGMA foreign_keys = OFF").finish();
     before_ = found();
     REQUIRE(before_.is_sound());  // or every change would seem to be noticed

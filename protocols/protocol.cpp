@@ -40,6 +40,14 @@ const Block* Protocol::find_block(const std::string& name) const {
   return found == blocks.end() ? nullptr : &*found;
 }
 
+const Block& Protocol::leader(const Block& block) const {
+  const auto found = std::ranges::find_if(blocks, [&](const Block& other) {
+    return !block.mixed_with.empty() && other.measure == block.mixed_with &&
+           other.session == block.session;
+  });
+  return found == blocks.end() ? block : *found;
+}
+
 bool may_procedures_end_early(const Block& block) {
   return block.comparison && std::ranges::any_of(block.comparison->tracks, [](const auto& track) {
            return track->may_end_early();

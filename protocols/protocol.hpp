@@ -215,7 +215,10 @@ struct Block {
   Order order{Order::shuffle};
   OrderConstraints constraints;
   bool is_practice{false};
-  bool is_fixed{false};        // in its place, whatever the order of the blocks
+  bool is_fixed{false};  // in its place, whatever the order of the blocks
+  // The measure of an earlier block, with whose trials its own are mixed; empty: they come by
+  // themselves.
+  std::string mixed_with;
   bool gives_feedback{false};  // which answer was right
   std::string instructions;    // before its first trial; may be empty
   std::optional<Picture> instructions_picture;
@@ -337,6 +340,8 @@ struct Protocol {
   const Stimulus& stimulus(const std::string& name) const;
   const Block& block(const std::string& name) const;
   const Block* find_block(const std::string& name) const;  // nullptr if there is none
+  // The block of the same session with whose trials its own are mixed; without one, itself.
+  const Block& leader(const Block& block) const;
   const Group& group(const std::string& name) const;
   // nullptr if there is none.
   const PlannedSession* find_session(const std::string& name) const;

@@ -69,7 +69,8 @@ enum class Purpose : std::uint64_t {
   resampling,
   block_order,
   square_order,
-  groups
+  groups,
+  mixed_blocks
 };
 
 // The seed of one stream of a study. Mixes by the finaliser of SplitMix64 (Steele et al. 2014).

@@ -275,6 +275,29 @@ void read_keys_of_task(MapReader& reader, const Protocol& protocol, Block& block
   }
 }
 
+// One place, one time of practice and one rhythm of breaks for all blocks that are mixed.
+void read_mixed_with(MapReader& reader, const Protocol& protocol, Block& block) {
+  std::vector<std::string> names;
+  if (!protocol.blocks.empty() && !protocol.blocks.back().is_practice) {
+    const Block& last = protocol.blocks.back();
+    names.push_back(last.mixed_with.empty() ? last.name : last.mixed_with);
+  }
+  block.mixed_with = reader.word(
+      {"mixed_with",
+       "the block before, not practice, or the one that is mixed with: its trials and those of "
+       "this one come in one random sequence, in which each block keeps its own order; all "
+       "instructions stand before it, breaks are as that one has them; unset: the blocks follow "
+       "one another"},
+      "block that this one may be mixed with (the one before, not practice)", names, "");
+  if (block.mixed_with.empty()) {
+    return;
+  }
+  for (const char* const key : {"practice", "fixed", "breaks"}) {
+    reader.refuse(
+        key, fmt::format("is that of block '{}', with which this one is mixed", block.mixed_with));
+  }
+}
+
 // The keys that blocks of every task have; the task reads its own.
 Block read_block(MapReader& reader, const Protocol& protocol) {
   Block block;
@@ -296,6 +319,7 @@ Block read_block(MapReader& reader, const Protocol& protocol) {
   block.is_fixed = reader.yes_or_no(
       {"fixed", "stays in its place where block_order moves others, and practice for all of them"},
       false);
+  read_mixed_with(reader, protocol, block);
   if (block.task != nullptr && block.task->uses_order()) {
     if (block.order == Order::listed || block.order == Order::williams) {
       reader.refuse("constraints", "are for random orders: this one is given");
@@ -372,7 +396,7 @@ void read_blocks(MapReader& top, const ReadFile& read_file, Protocol& protocol) 
 void read_block_order(MapReader& top, Protocol& protocol) {
   std::vector<std::string> movable;
   for (const Block& block : protocol.blocks) {
-    if (!block.is_practice && !block.is_fixed) {
+    if (!block.is_practice && !block.is_fixed && block.mixed_with.empty()) {
       movable.push_back(block.name);
     }
   }
@@ -387,9 +411,10 @@ void read_block_order(MapReader& top, Protocol& protocol) {
             reader.words({"blocks",
                           "those that exchange their places; the others stay where they are. A "
                           "practice block moves with the block after it; one that stands first "
-                          "does only where each of these has its own; unset: all but practice and "
-                          "fixed ones"},
-                         "block that may move (not practice, not fixed)", movable, movable);
+                          "does only where each of these has its own, and one that is mixed with "
+                          "another with that one; unset: all but practice, fixed and mixed ones"},
+                         "block that may move (not practice, not fixed, not mixed with another)",
+                         movable, movable);
         reader.check("blocks", chosen.blocks.size() >= 2, R"({"minItems": 2})",
                      "are not two blocks or more, without practice and fixed ones");
       });

@@ -14,7 +14,8 @@
 namespace tapstudy::protocols {
 namespace {
 // Blocks that stay together, as places in the protocol's list: a block with the practice that
-// belongs to it; practice that stays; a last one may be practice alone.
+// belongs to it and those that are mixed with it; practice that stays; a last one may be practice
+// alone.
 using Unit = std::vector<std::size_t>;
 
 bool may_move(const Protocol& protocol, const Block& block) {
@@ -37,6 +38,15 @@ std::vector<Part> parts_of(const Protocol& protocol, const Group* group) {
   return parts.empty() ? std::vector<Part>{{group, ""}} : parts;
 }
 
+// The unit with whose block this one is mixed; nullptr if there is none.
+Unit* unit_led_alike(const Protocol& protocol, const Block& block, std::vector<Unit>& units) {
+  const auto found = std::ranges::find_if(units, [&](const Unit& unit) {
+    return !block.mixed_with.empty() &&
+           protocol.leader(protocol.blocks[unit.back()]).name == protocol.leader(block).name;
+  });
+  return found == units.end() ? nullptr : &*found;
+}
+
 // Each of the part's with the practice before it.
 std::vector<Unit> with_practice_before(const Protocol& protocol, const Part& part) {
   std::vector<Unit> units;
@@ -44,6 +54,10 @@ std::vector<Unit> with_practice_before(const Protocol& protocol, const Part& par
   for (std::size_t i = 0; i < protocol.blocks.size(); ++i) {
     const Block& block = protocol.blocks[i];
     if (!does(part.group, block) || block.session != part.session) {
+      continue;
+    }
+    if (Unit* const mixed = unit_led_alike(protocol, block, units)) {
+      mixed->push_back(i);
       continue;
     }
     if (is_new || block.is_fixed) {
@@ -55,19 +69,24 @@ std::vector<Unit> with_practice_before(const Protocol& protocol, const Part& par
   return units;
 }
 
-// The last block of those that stay together says whether they move.
+// The last block of those that stay together, or the one it is mixed with, says whether they move.
 bool moves(const Protocol& protocol, const Unit& unit) {
-  return may_move(protocol, protocol.blocks[unit.back()]);
+  return may_move(protocol, protocol.leader(protocol.blocks[unit.back()]));
 }
 
 std::vector<Unit> units_of(const Protocol& protocol, const Part& part) {
   std::vector<Unit> units = with_practice_before(protocol, part);
+  const auto is_practice = [&](std::size_t block) { return protocol.blocks[block].is_practice; };
   const bool has_each_its_own = std::ranges::all_of(
-      units, [&](const Unit& unit) { return !moves(protocol, unit) || unit.size() > 1; });
-  if (!units.empty() && units.front().size() > 1 && !has_each_its_own) {
-    Unit practice = units.front();
-    units.front() = {practice.back()};
-    practice.pop_back();
+      units, [&](const Unit& unit) { return !moves(protocol, unit) || is_practice(unit.front()); });
+  if (units.empty() || has_each_its_own) {
+    return units;
+  }
+  Unit& first = units.front();
+  const auto end = std::ranges::find_if_not(first, is_practice);
+  if (end != first.begin() && end != first.end()) {
+    const Unit practice{first.begin(), end};
+    first.erase(first.begin(), end);
     units.insert(units.begin(), practice);
   }
   return units;
@@ -170,14 +189,54 @@ Draw draw_of(std::uint64_t counterbalancing_seed, std::size_t block_index,
 }
 
 namespace {
+// Those that are mixed with one another, in the protocol's order; most are alone.
+std::vector<Unit> mixed_units(const Protocol& protocol, const std::vector<std::size_t>& sequence) {
+  std::vector<Unit> mixed;
+  const auto leader_at = [&](std::size_t i) -> const Block& {
+    return protocol.leader(protocol.blocks[i]);
+  };
+  for (const std::size_t i : sequence) {
+    if (mixed.empty() || leader_at(mixed.back().back()).name != leader_at(i).name) {
+      mixed.emplace_back();
+    }
+    mixed.back().push_back(i);
+  }
+  std::ranges::for_each(mixed, [](Unit& unit) { std::ranges::sort(unit); });
+  return mixed;
+}
+
+// Each order of the blocks' trials is equally likely in which those of a block keep their own.
+Schedule mixed(std::vector<Schedule> of_blocks, std::uint64_t seed) {
+  std::vector<std::size_t> turns;
+  for (std::size_t i = 0; i < of_blocks.size(); ++i) {
+    turns.insert(turns.end(), of_blocks[i].size(), i);
+  }
+  if (of_blocks.size() > 1) {
+    core::Rng rng{seed};
+    rng.shuffle(turns);
+  }
+  Schedule all;
+  std::vector<std::size_t> next(of_blocks.size(), 0);
+  for (const std::size_t i : turns) {
+    all.push_back(std::move(of_blocks[i][next[i]++]));
+  }
+  return all;
+}
+
 Schedule scheduled(const Protocol& protocol, const std::vector<std::size_t>& sequence,
                    std::uint64_t participant_seed, int order_index) {
   Schedule schedule;
-  for (const std::size_t i : sequence) {
-    const Block& block = protocol.blocks[i];
-    const Draw draw = draw_of(protocol.counterbalancing_seed, i, participant_seed,
-                              index_in_group(protocol, order_index));
-    for (PlannedTrial& trial : block.task->trials(block, draw)) {
+  for (const Unit& unit : mixed_units(protocol, sequence)) {
+    std::vector<Schedule> of_blocks;
+    for (const std::size_t i : unit) {
+      const Block& block = protocol.blocks[i];
+      of_blocks.push_back(
+          block.task->trials(block, draw_of(protocol.counterbalancing_seed, i, participant_seed,
+                                            index_in_group(protocol, order_index))));
+    }
+    for (PlannedTrial& trial :
+         mixed(std::move(of_blocks),
+               core::derived_seed(participant_seed, core::Purpose::mixed_blocks, unit.front()))) {
       trial.number = static_cast<int>(schedule.size()) + 1;
       schedule.push_back(std::move(trial));
     }

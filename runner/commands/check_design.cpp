@@ -171,13 +171,14 @@ long minutes(double seconds) {
 
 // "material: identification, 4 stimuli, 8 trials a participant"
 std::string heading(const protocols::Block& block, const BlockLength& length) {
-  return fmt::format("{}{}{}: {}, {}, {} a participant", block.name,
-                     block.is_practice ? " (practice)" : "",
-                     block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
-                     block.task->name(),
-                     block.stimuli.size() == 1 ? block.stimuli.front()
-                                               : fmt::format("{} stimuli", block.stimuli.size()),
-                     describe_length(block, length));
+  return fmt::format(
+      "{}{}{}{}: {}, {}, {} a participant", block.name, block.is_practice ? " (practice)" : "",
+      block.presented == protocols::Presented::real_plates ? " (real plates)" : "",
+      block.mixed_with.empty() ? "" : fmt::format(" (mixed with '{}')", block.mixed_with),
+      block.task->name(),
+      block.stimuli.size() == 1 ? block.stimuli.front()
+                                : fmt::format("{} stimuli", block.stimuli.size()),
+      describe_length(block, length));
 }
 
 using BlockOrderDealt = std::vector<std::size_t>;  // places in the protocol's list
@@ -264,7 +265,7 @@ void warn_of_block_order(const protocols::Protocol& protocol, int participants) 
   }
   std::map<const protocols::Task*, int> blocks_of;
   for (const protocols::Block& block : protocol.blocks) {
-    blocks_of[block.task] += block.is_practice ? 0 : 1;
+    blocks_of[block.task] += block.is_practice || !block.mixed_with.empty() ? 0 : 1;
   }
   if (std::ranges::any_of(blocks_of, [](const auto& task) { return task.second > 1; })) {
     fmt::print(

@@ -470,6 +470,10 @@ std::string unstarted_blocks(const Protocol& protocol, const DoneBlocks& done) {
   }
   return names.empty() ? "" : fmt::format("Without an answer: {}. ", fmt::join(names, ", "));
 }
+// With the described block before it, as a leader and its blocks that follow one another are.
+bool is_mixed(const Block& block, const Protocol& protocol, const DoneBlocks& done) {
+  return &protocol.leader(block) != &block && done.contains(protocol.leader(block).name);
+}
 }  // namespace
 
 core::CitingText describe_procedure(const Protocol& protocol,
@@ -482,7 +486,12 @@ core::CitingText describe_procedure(const Protocol& protocol,
   for (const Block& block : protocol.blocks) {
     const auto row = done.find(block.name);
     if (row != done.end()) {
-      blocks.push_back(describe_block(block, row->second, asked_of(block, groups)));
+      CitingText described = describe_block(block, row->second, asked_of(block, groups));
+      if (is_mixed(block, protocol, done)) {
+        blocks.back() += citing(", mixed at random with {}", described);
+      } else {
+        blocks.push_back(std::move(described));
+      }
       is_by_all = is_by_all && row->second.participants.size() == participants.size();
     }
   }

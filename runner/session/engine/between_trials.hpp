@@ -66,7 +66,8 @@ class BetweenTrials {
                         const std::optional<std::string>& up_to);
   void read(const std::string& text, const std::optional<protocols::Picture>& picture,
             const std::string& whose);
-  void introduce(const protocols::Block& block);
+  void introduce(const protocols::Block& block, const protocols::Schedule& presented);
+  const protocols::Block& leader(const std::string& block) const;
   void rest_if_due(const protocols::Block& block);
   // Of these forms what is asked now and was not asked here before.
   void ask(const std::vector<std::string>& forms, const std::string& asked);

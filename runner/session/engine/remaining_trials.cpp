@@ -81,9 +81,10 @@ std::deque<PlannedTrial> waiting_trials(const protocols::Schedule& schedule,
     if (found == waiting.end()) {
       continue;
     }
-    const std::string block = found->block;
-    const auto end = std::find_if(found, waiting.end(),
-                                  [&](const PlannedTrial& other) { return other.block != block; });
+    auto end = std::next(found);
+    for (auto other = end; other != waiting.end(); ++other) {
+      end = other->block == found->block ? std::next(other) : end;
+    }
     std::rotate(found, std::next(found), end);
   }
   return waiting;

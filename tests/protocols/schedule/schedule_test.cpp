@@ -464,6 +464,106 @@ TEST_CASE("trials are numbered in the order of the blocks, and each block keeps 
   CHECK(stimuli.at("b").size() == 1);
 }
 
+namespace {
+// The blocks "m…" are mixed with the one before that is not.
+protocols::Protocol study_of_mixed(const Names& blocks, const std::string& order) {
+  std::string text = study(blocks, order).text;
+  std::string leader;
+  for (const std::string& name : blocks) {
+    const std::string line = "{name: " + name + ",";
+    if (name.starts_with("m")) {
+      text.replace(text.find(line), line.size(), line + " mixed_with: " + leader + ",");
+    } else {
+      leader = name;
+    }
+  }
+  return protocols::parse_protocol(text, "study.yaml");
+}
+
+// The letters of the trials' blocks: "aabmm".
+std::string sequence_of(const protocols::Schedule& schedule) {
+  std::string letters;
+  for (const protocols::PlannedTrial& trial : schedule) {
+    letters += trial.block.front();
+  }
+  return letters;
+}
+
+Names stimuli_of(const std::string& block, const protocols::Schedule& schedule) {
+  Names stimuli;
+  for (const protocols::PlannedTrial& trial : schedule) {
+    if (trial.block == block) {
+      stimuli.push_back(trial.alternatives.front().stimulus);
+    }
+  }
+  return stimuli;
+}
+}  // namespace
+
+TEST_CASE("every order of mixed trials is equally likely that keeps each block's own",
+          "[protocols][schedule]") {
+  const protocols::Protocol mixed = study_of_mixed({"practice", "a", "m"}, "");
+  const protocols::Protocol apart = study({"practice", "a", "m"}, "");
+  constexpr int participants = 7000;
+  std::map<std::string, std::int64_t> orders;
+  bool agrees = true;
+  for (int i = 0; i < participants; ++i) {
+    const auto seed = static_cast<std::uint64_t>(i);
+    const protocols::Schedule schedule = protocols::make_schedule(mixed, seed, i);
+    ++orders[sequence_of(schedule)];
+    for (const std::string block : {"practice", "a", "m"}) {
+      const auto alone = protocols::make_schedule(apart, seed, i);
+      agrees = agrees && stimuli_of(block, schedule) == stimuli_of(block, alone);
+    }
+  }
+  CHECK(agrees);
+  CHECK(orders.size() == 70);  // 8 over 4, after the practice
+  double chi_squared = 0.0;
+  for (const auto& [order, count] : orders) {
+    CHECK(order.starts_with("pppp"));
+    chi_squared += std::pow(static_cast<double>(count) - 100.0, 2.0) / 100.0;
+  }
+  CHECK(chi_squared < 111.1);  // the quantile .999 of 69 degrees of freedom
+}
+
+TEST_CASE("mixed blocks move together, with the practice before them, and a stored order is kept",
+          "[protocols][schedule]") {
+  const protocols::Protocol protocol =
+      study_of_mixed({"practice_a", "a", "m", "practice_b", "b"}, "{order: williams}");
+  std::set<Names> seen;
+  for (int i = 0; i < 2; ++i) {
+    seen.insert(names_of(protocol, 1, i));
+    const protocols::Schedule schedule = protocols::make_schedule(protocol, 9, i);
+    const std::string stored = protocols::described(schedule);
+    CHECK(protocols::described(protocols::make_schedule(protocol, 9, i, stored)) == stored);
+  }
+  CHECK(seen == std::set<Names>{{"practice_a", "a", "m", "practice_b", "b"},
+                                {"practice_b", "b", "practice_a", "a", "m"}});
+  // practice that is for all of them stays first
+  const protocols::Protocol shared =
+      study_of_mixed({"practice", "a", "m", "b"}, "{order: williams}");
+  for (int i = 0; i < 2; ++i) {
+    CHECK(names_of(shared, 1, i).front() == "practice");
+  }
+}
+
+TEST_CASE("a block is mixed with the one before it, and has neither practice nor breaks of its own",
+          "[protocols]") {
+  const std::string text = study({"practice", "a", "b"}, "").text;
+  const auto refused = [&](const std::string& block, const std::string& keys,
+                           const std::string& why) {
+    std::string changed = text;
+    const std::string line = "{name: " + block + ",";
+    changed.replace(changed.find(line), line.size(), line + " " + keys + ",");
+    CHECK_THROWS_WITH(protocols::parse_protocol(changed, "study.yaml"),
+                      Contains("mixed") && Contains(why));
+  };
+  refused("a", "mixed_with: practice", "practice");
+  refused("b", "mixed_with: b", "b");
+  refused("b", "mixed_with: a, fixed: true", "fixed");
+  refused("b", "mixed_with: a, breaks: {every_trials: 3}", "breaks");
+}
+
 TEST_CASE("an order of blocks that is none is refused", "[protocols]") {
   const auto refused = [](const std::string& order, const std::string& why) {
     CHECK_THROWS_WITH(study({"practice", "a", "b"}, order),

@@ -386,44 +386,85 @@ TEST_CASE("of trials and time whichever is first brings the rest", "[runner][ses
   CHECK(rests({.every_trials = 9, .every_seconds = 35.0}) == std::vector{140.0, 240.0});
 }
 
-TEST_CASE("a block's questionnaire that an interruption left open is asked before the next block",
-          "[runner][session]") {
-  struct Person final : runner::Participant {
-    explicit Person(std::vector<std::string>& done) : done_{done} {}
-    std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
-                                       runner::TrialControl& /*control*/) override {
-      return std::nullopt;
-    }
-    void read(const std::string& text, const std::optional<protocols::Picture>&) override {
-      done_.push_back(text);
-    }
-    bool fills_in_forms() const override { return true; }
-    protocols::FormAnswers fill_in(const protocols::Form& form) override {
-      done_.push_back(form.title);
-      return {};
-    }
-    std::vector<std::string>& done_;
-  };
+namespace {
+// Notes what is read and which forms are filled in.
+struct Reading final : runner::Participant {
+  std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
+                                     runner::TrialControl& /*control*/) override {
+    return std::nullopt;
+  }
+  void read(const std::string& text, const std::optional<protocols::Picture>&) override {
+    done.push_back(text);
+  }
+  bool fills_in_forms() const override { return true; }
+  protocols::FormAnswers fill_in(const protocols::Form& form) override {
+    done.push_back(form.title);
+    return {};
+  }
+  std::vector<std::string> done;
+};
+
+// Each block with instructions and a form.
+protocols::Protocol with_forms_after(const std::vector<std::string>& blocks) {
   protocols::Protocol protocol;
   protocol.forms["load"].name = "load";
   protocol.forms["load"].title = "form";
   protocol.forms["load"].items.emplace_back().is_required = false;
-  for (const char* const name : {"first", "second"}) {
+  for (const std::string& name : blocks) {
     protocols::Block& block = protocol.blocks.emplace_back();
-    block.name = name;
-    block.instructions = std::string{"read "} + name;
+    block.name = block.measure = name;
+    block.instructions = "read " + name;
     block.forms_after = {"load"};
   }
-  std::vector<std::string> done;
-  Person person{done};
+  return protocol;
+}
+
+protocols::Schedule trials_of(const std::vector<std::string>& blocks) {
+  protocols::Schedule schedule;
+  for (const std::string& block : blocks) {
+    schedule.emplace_back().block = block;
+  }
+  return schedule;
+}
+}  // namespace
+
+TEST_CASE("a block's questionnaire that an interruption left open is asked before the next block",
+          "[runner][session]") {
+  const protocols::Protocol protocol = with_forms_after({"first", "second"});
+  Reading person;
   runner::SessionStates states{1, [] { return 0.0; }};
   runner::BetweenTrials between{{protocol, person, states, [](auto) {}, [] {}}, {}};
-  protocols::Schedule schedule(2);
-  schedule[0].block = "first";
-  schedule[1].block = "second";
+  const protocols::Schedule schedule = trials_of({"first", "second"});
   between.before(schedule[1], schedule);
   between.before(schedule[1], schedule);
-  CHECK(done == std::vector<std::string>{"form", "read second"});
+  CHECK(person.done == std::vector<std::string>{"form", "read second"});
+}
+
+TEST_CASE("instructions of mixed blocks are read before the first of them, forms follow the last",
+          "[runner][session]") {
+  protocols::Protocol protocol = with_forms_after({"a", "b", "c"});
+  protocol.blocks[1].mixed_with = "a";
+  Reading person;
+  runner::SessionStates states{1, [] { return 0.0; }};
+  runner::BetweenTrials between{{protocol, person, states, [](auto) {}, [] {}}, {}};
+  const protocols::Schedule schedule = trials_of({"b", "a", "b", "c"});
+  for (const protocols::PlannedTrial& trial : schedule) {
+    between.before(trial, schedule);
+  }
+  CHECK(person.done == std::vector<std::string>{"read a", "read b", "form", "form", "read c"});
+}
+
+TEST_CASE("a requeued trial of a resumed session follows the last of its block, mixed or not",
+          "[runner][session]") {
+  protocols::Schedule schedule = trials_of({"a", "b", "a", "b", "c"});
+  for (std::size_t i = 0; i < schedule.size(); ++i) {
+    schedule[i].number = static_cast<int>(i) + 1;
+  }
+  std::vector<int> numbers;
+  for (const protocols::PlannedTrial& trial : runner::waiting_trials(schedule, {}, {1})) {
+    numbers.push_back(trial.number);
+  }
+  CHECK(numbers == std::vector<int>{2, 3, 1, 4, 5});
 }
 
 namespace {

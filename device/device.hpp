@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
@@ -6,43 +7,47 @@
 #include "core/error.hpp"
 #include "core/haptics/haptic_state.hpp"
 namespace tapstudy::device {
-// So many replies in a row may be missing before it is a fault; the loop lets force fade meanwhile.
-inline constexpr int max_missed_replies = 3;
-// In the long run a tenth may be missing: each counts for ten, and 20 at once are too many.
-inline constexpr int replies_for_a_missed_one = 10;
-inline constexpr int max_missed_in_debt = 20;
+// So long replies may be missing before it is a fault; the loop lets force fade to nothing
+// meanwhile.
+inline constexpr double max_unanswered_s = 0.01;
+// In the long run they may be missing for a tenth of the time: time without one counts tenfold, and
+// 20 ms at once are too much.
+inline constexpr double weight_of_unanswered = 10.0;
+inline constexpr double max_unanswered_in_debt_s = 0.02;
 
 // The hand as last read, which stands in for a reply that is missing.
 class HeldHand {
  public:
-  void forget() noexcept {
-    hand_.reset();
-    missed_replies_ = 0;
-    debt_ = 0;
-  }
-  void keep(const core::HandState& hand) noexcept {
+  void forget() noexcept { *this = {}; }
+  // since_reply_s: from the reply before.
+  void keep(const core::HandState& hand, double since_reply_s) noexcept {
     hand_ = hand;
     missed_replies_ = 0;
-    debt_ -= debt_ > 0 ? 1 : 0;
+    unanswered_s_ = 0.0;
+    debt_s_ = std::max(0.0, debt_s_ - since_reply_s);
   }
-  // False where nothing is known, or has stood in for too long.
-  bool use_last_reading(core::HandState& hand) noexcept {
-    if (!hand_ || missed_replies_ == max_missed_replies ||
-        debt_ >= replies_for_a_missed_one * max_missed_in_debt) {
+  // False where nothing is known, or has stood in for too long. elapsed_s: since the tick before.
+  bool use_last_reading(core::HandState& hand, double elapsed_s) noexcept {
+    constexpr double rounding_s = 1e-6;
+    unanswered_s_ += elapsed_s;
+    if (!hand_ || unanswered_s_ > max_unanswered_s + rounding_s ||
+        debt_s_ >= weight_of_unanswered * max_unanswered_in_debt_s) {
       return false;
     }
     ++missed_replies_;
-    debt_ += replies_for_a_missed_one;
+    debt_s_ += weight_of_unanswered * elapsed_s;
     hand = *hand_;
     return true;
   }
   bool is_known() const noexcept { return hand_.has_value(); }
   int missed_replies() const noexcept { return missed_replies_; }
+  double unanswered_s() const noexcept { return unanswered_s_; }
 
  private:
   std::optional<core::HandState> hand_;
-  int missed_replies_{0};
-  int debt_{0};  // in replies
+  int missed_replies_{0};     // in a row
+  double unanswered_s_{0.0};  // since the last one that came
+  double debt_s_{0.0};
 };
 
 class DeviceError : public core::Error {
@@ -70,7 +75,8 @@ struct DeviceDetail {
   double pose_residual_m{std::numeric_limits<double>::quiet_NaN()};
   double closure_margin{std::numeric_limits<double>::quiet_NaN()};
   double motor_voltage_v{std::numeric_limits<double>::quiet_NaN()};  // mean over the motors
-  int missed_replies{0};  // in a row: the position is the last one known
+  int missed_replies{0};     // in a row: the position is the last one known
+  double unanswered_s{0.0};  // so long it has been
 };
 
 // A force-feedback device, real or simulated, as used by the haptic thread: read() and write() are

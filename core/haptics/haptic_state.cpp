@@ -48,7 +48,7 @@ const char* to_text(TickFault fault) noexcept {
     case TickFault::tensions_unsolved:
       return "no string tensions were found for the force";
     case TickFault::too_late:
-      return "the loop was late too many times in a row";
+      return "the loop was late in each tick for longer than the rig allows";
     case TickFault::watchdog_expired:
       return "the program stalled; the watchdog removed the force";
     case TickFault::guardian_lost:

@@ -202,7 +202,7 @@ double HapticLoop::bridging_share(const DeviceDetail& detail, Nanoseconds elapse
   }
   report_.bridged += is_bridged ? 1 : 0;
   was_bridged_ = is_bridged;
-  return 1.0 - static_cast<double>(detail.missed_replies) / max_missed_replies;
+  return std::max(0.0, 1.0 - detail.unanswered_s / max_unanswered_s);
 }
 
 core::RenderedTick HapticLoop::follow(const core::HandState& hand,

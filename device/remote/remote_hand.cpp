@@ -163,6 +163,7 @@ TickFault RemoteHand::begin() noexcept {
   released_s_ = 0.0;
   detail_.missed_replies = 0;
   return version_ == 3 ? ask_who_it_is() : TickFault::none;
+  detail_.unanswered_s = 0.0;
 }
 
 // The other program may have been started anew since the last trial, with another device: limits
@@ -242,18 +243,21 @@ TickFault RemoteHand::take_reply(double elapsed_s) noexcept {
 TickFault RemoteHand::read(core::HandState& hand, double elapsed_s) noexcept {
   since_reply_s_ += elapsed_s;
   const TickFault fault = ask();
-  if (fault == TickFault::no_reply && held_.use_last_reading(hand)) {
+  if (fault == TickFault::no_reply && held_.use_last_reading(hand, elapsed_s)) {
     detail_.missed_replies = held_.missed_replies();
     detail_.achieved_n.setConstant(untold);
     return TickFault::none;
   }
   if (fault != TickFault::none) {
+    detail_.unanswered_s = held_.unanswered_s();
     return fault;
   }
   detail_.missed_replies = 0;
-  const TickFault of_reply = take_reply(std::exchange(since_reply_s_, 0.0));
+  detail_.unanswered_s = 0.0;
+  const double since_reply_s = std::exchange(since_reply_s_, 0.0);
+  const TickFault of_reply = take_reply(since_reply_s);
   hand = reply_.hand;
-  held_.keep(hand);
+  held_.keep(hand, since_reply_s);
   return of_reply;
 }
 

@@ -6,6 +6,7 @@ namespace tapstudy::device {
 using core::TickFault;
 namespace {
 constexpr double max_guardian_silence_s = 0.1;
+constexpr int max_late_replies = 8;  // that are told apart
 
 TickFault fault_of(UsbOutcome outcome) noexcept {
   switch (outcome) {
@@ -78,17 +79,18 @@ TickFault BoardLink::fault_of_watchdog(double elapsed_s) noexcept {
 }
 
 // A reply that was missed may still come, and must not be taken for the next one: requests differ
-// from then on, by some counts of one string, so that their echoes do.
+// from then on, by some counts of one string (8: about 50 mN), so that their echoes do.
 UsbOutcome BoardLink::exchange_as_owner(DacCounts outputs) noexcept {
   if (missed_replies_ > 0) {
     pipe_.drain();
-    const int marked = outputs.front() + missed_replies_;
+    const int marked = outputs.front() + 1 + (missed_replies_ - 1) % max_late_replies;
     outputs.front() = static_cast<std::uint16_t>(std::min<int>(marked, max_dac_counts));
   }
   is_force_off_ = false;
   UsbOutcome outcome = board_.exchange(pipe_, outputs, reading_);
   sent_before_ = std::exchange(sent_, outputs);
-  for (int i = 0; i < missed_replies_ && outcome == UsbOutcome::ok && !is_echo_right(); ++i) {
+  const int may_come = std::min(missed_replies_, max_late_replies);
+  for (int i = 0; i < may_come && outcome == UsbOutcome::ok && !is_echo_right(); ++i) {
     outcome = board_.receive(pipe_, reading_);
   }
   return outcome;

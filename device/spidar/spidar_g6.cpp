@@ -13,6 +13,8 @@ constexpr int rounds_a_tick = 4;
 constexpr int rounds_from_anywhere = 20;
 // After a late tick the next may follow at once; a difference over less would be all quantisation.
 constexpr double min_step_s = 1e-4;
+// Where no position is needed in time.
+constexpr int patient_exchanges = 4;
 }  // namespace
 
 SpidarG6::SpidarG6(UsbPipe& pipe, SpidarBoard& board, SpidarSettings settings)
@@ -51,10 +53,9 @@ TickFault SpidarG6::exchange(double elapsed_s) noexcept {
   return fault;
 }
 
-// Where no position is needed in time, a reply may come as late as it may be missing in a tick.
 TickFault SpidarG6::exchange_patiently() noexcept {
   TickFault fault = TickFault::no_reply;
-  const int exchanges = link_.can_miss_a_reply() ? 1 + max_missed_replies : 1;
+  const int exchanges = link_.can_miss_a_reply() ? patient_exchanges : 1;
   for (int i = 0; i < exchanges && fault == TickFault::no_reply; ++i) {
     fault = exchange(settings_.dt_s);
   }
@@ -85,6 +86,7 @@ TickFault SpidarG6::begin() noexcept {
   counts_.forget();
   detail_.missed_replies = 0;
   without_voltage_s_ = 0.0;
+  detail_.unanswered_s = 0.0;
   return link_.begin_watch();
 }
 
@@ -99,15 +101,18 @@ TickFault SpidarG6::read(core::HandState& hand, double elapsed_s) noexcept {
   unread_s_ += elapsed_s;
   const TickFault fault = exchange(elapsed_s);
   // without an echo a late reply could not be told from the right one
-  if (fault == TickFault::no_reply && link_.can_miss_a_reply() && held_.use_last_reading(hand)) {
+  if (fault == TickFault::no_reply && link_.can_miss_a_reply() &&
+      held_.use_last_reading(hand, elapsed_s)) {
     detail_.missed_replies = held_.missed_replies();
     return TickFault::none;
+    detail_.unanswered_s = held_.unanswered_s();
   }
   if (fault != TickFault::none) {
     return fault;
   }
   detail_.missed_replies = 0;
   if (const TickFault off = fault_of_amplifier(elapsed_s); off != TickFault::none) {
+  detail_.unanswered_s = 0.0;
     return off;
   }
   return follow(hand, std::max(std::exchange(unread_s_, 0.0), min_step_s));
@@ -177,7 +182,7 @@ TickFault SpidarG6::follow(core::HandState& hand, double elapsed_s) noexcept {
   detail_.closure_margin = closure_margin(strings_);
   hand = {with_z_turned(pose_.position_m),
           with_z_turned(velocity_.take(pose_.position_m, elapsed_s))};
-  held_.keep(hand);
+  held_.keep(hand, elapsed_s);
   const bool is_turned_too_far =
       rotation_vector_rad(pose_.rotation).norm() > settings_.limits.max_turn_rad;
   return is_turned_too_far || detail_.closure_margin <= 0.0 ? TickFault::outside_workspace

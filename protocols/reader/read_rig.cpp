@@ -32,6 +32,7 @@ void read_loop(MapReader& top, Rig& rig) {
             if (reader.has("cpu")) {
               realtime.cpu = reader.integer({"cpu", "processor to run on; unset: any"}, 0, 1023);
             }
+            reader.refuse_former("max_late_ticks_in_a_row", "max_late_s, a time in seconds");
             rig.max_late_s =
                 reader.number({"max_late_s",
                                "ticks of which each is late for longer end the trial; 0, not with "

@@ -260,6 +260,14 @@ void MapReader::refuse(const std::string& key, const std::string& what) {
   }
 }
 
+void MapReader::refuse_former(const std::string& key, const std::string& now) {
+  const YAML::Node& whole = *node_;
+  if (pass_ == nullptr && whole[key].IsDefined()) {
+    known_.push_back(key);
+    reject(key, "is a key of an earlier version: now it is " + now);
+  }
+}
+
 void MapReader::check(const std::string& key, bool is_right, const std::string& schema,
                       const std::string& what) {
   if (pass_ != nullptr) {

@@ -90,6 +90,8 @@ class MapReader {
   void leave(const std::string& key) { known_.push_back(key); }
   // Rejects the key if it is given: it is not for what the other keys say.
   void refuse(const std::string& key, const std::string& what);
+  // Rejects a key of an earlier version, by the name of the one that says it now.
+  void refuse_former(const std::string& key, const std::string& now);
   // Rejects the key's value if it is not right; `schema` says the same in JSON schema's members.
   void check(const std::string& key, bool is_right, const std::string& schema,
              const std::string& what);

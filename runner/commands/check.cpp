@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "core/error.hpp"
@@ -114,7 +115,8 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
 }
 
 // The bound of a device that acts later than it is told is lower.
-void print_contact(const protocols::Protocol& protocol, int delay_ticks) {
+void print_contact(const protocols::Protocol& protocol, double delay_s) {
+  const int delay_ticks = static_cast<int>(std::ceil(delay_s * protocol.rate_hz - 1e-6));
   const double asked = largest_contact_stiffness_n_per_m(protocol);
   core::HandBody hand = protocol.simulation.hand;
   const auto limit_of = [&](int delay) {
@@ -128,7 +130,7 @@ void print_contact(const protocols::Protocol& protocol, int delay_ticks) {
           : " of penalty",
       protocol.rate_hz, limit);
   if (delay_ticks > 0) {
-    fmt::print(" with this device, whose force acts {} tick late\n", delay_ticks);
+    fmt::print(" with this device, whose force acts {:.6g} ms late\n", 1e3 * delay_s);
   } else {
     fmt::print(",\n  on a device whose force acts a tick late up to {:.0f} N/m\n", limit_of(1));
   }
@@ -186,13 +188,13 @@ void run_check(const CheckOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
   const int participants = planned_participants(options.participants, protocol);
   check_simulations(options);
-  int delay_ticks = 0;
+  double delay_s = 0.0;
   std::optional<protocols::Rig> rig;
   if (!options.rig.empty()) {
     rig = read_rig(options.rig);
     loop_settings(protocol, *rig);
     check_fits(protocol, *rig);
-    delay_ticks = kind_of(*rig).delay_ticks(*rig);
+    delay_s = kind_of(*rig).force_delay_s(*rig, protocol.rendering.dt_s);
   }
   for (const std::string& language : protocols::languages_of(protocol.translations)) {
     protocols::read_protocol(options.protocol, language);  // what only its sessions would meet
@@ -204,7 +206,7 @@ void run_check(const CheckOptions& options) {
     print_unrendered_modes(protocol, models, *rig);
   }
   print_families(protocol, models);
-  print_contact(protocol, delay_ticks);
+  print_contact(protocol, delay_s);
   const int index = participants - 1;
   const std::uint64_t seed =
       core::derived_seed(seed_from(options.seed, "--seed"), core::Purpose::participant,

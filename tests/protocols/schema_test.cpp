@@ -352,7 +352,8 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
     asked.merge(runner::rig_keys_asked_for(rig, directory / "rig.yaml"));
   }
   // these are asked for only where they stand
-  asked.insert({"loop.cpu", "vibration_band_hz", "spidar.relay", "spidar.rotary_switch"});
+  asked.insert({"loop.cpu", "vibration_band_hz", "spidar.relay", "spidar.rotary_switch",
+                "remote.force_delay_s"});
   CHECK(keys_in("rig") == asked);
   CHECK(keys_in("calibration") ==
         protocols::calibration_keys_asked_for(calibration(), "calibration.yaml"));
@@ -414,8 +415,9 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema]") 
       {"spidar_g6", "lateral_scale: 0.05", "lateral_scale: 0"},
       {"remote", "port: 50607", "port: 80"},
       {"remote", "max_reply_s: 0.003", "max_reply_s: 0"},
+      {"remote", "max_reply_s: 0.003", "force_delay_s: 0.002"},
+      {"remote", "max_reply_s: 0.003", "force_delay_s: -1"},
       {"remote", "max_reply_s: 0.003", "delay_ticks: 2"},
-      {"remote", "max_reply_s: 0.003", "delay_ticks: -1"},
       {"replay", "trial_id: 1", "trial_id: 0"},
       {"replay", ", trial_id: 1", ""},
   };

@@ -23,11 +23,11 @@ const DeviceKind& kind_of(const protocols::Rig& rig) {
 }
 
 double read_max_reply_s(protocols::MapReader& section, double usual_s) {
-  return section.number(
-      {"max_reply_s",
-       "a reply that takes longer is missing; more than three in a row, or a tenth of all in the "
-       "long run, are a fault; at most half of loop.max_stall_s"},
-      {0.0001, 0.05}, usual_s);
+  return section.number({"max_reply_s",
+                         "a reply that takes longer is missing; none for more than 0.01 s, or for "
+                         "a tenth of the time "
+                         "in the long run, is a fault; at most half of loop.max_stall_s"},
+                        {0.0001, 0.05}, usual_s);
 }
 
 std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,

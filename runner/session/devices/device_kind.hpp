@@ -54,9 +54,11 @@ class DeviceKind : public protocols::RigDevice {
   }
   // Whether it is present and could be opened now.
   virtual bool is_there() const { return true; }
-  // How many ticks later than a force is computed it is exerted: it lowers the stability bound of
-  // the contact (device/hand/penalty_limit.hpp).
-  virtual int delay_ticks(const protocols::Rig& /*rig*/) const { return 0; }
+  // How much later than a force is computed it is exerted: it lowers the stability bound of the
+  // contact (device/hand/penalty_limit.hpp).
+  virtual double force_delay_s(const protocols::Rig& /*rig*/, double /*period_s*/) const {
+    return 0.0;
+  }
   // Whether its hand is a participant's, or a simulation of one.
   virtual bool has_participant() const { return true; }
 

@@ -20,7 +20,7 @@ struct RemoteSection final : protocols::DeviceSection {
   std::uint16_t port{};
   double max_reply_s{0.003};  // of the other program to a tick's question
   double max_sample_age_s{device::RemoteLimits{}.max_sample_age_s};
-  int delay_ticks{1};                    // of its force
+  std::optional<double> force_delay_s;   // from request to action
   std::string accepted_without_release;  // who answers for it, and why; empty: nobody does
   double max_reply_time_s() const override { return max_reply_s; }
 };
@@ -153,11 +153,14 @@ class RemoteKind final : public DeviceKind {
                    "an older position, or one whose sample number stands still for longer, is a "
                    "fault; version 3 of the protocol"},
                   {0.0005, 0.05}, section->max_sample_age_s);
-              section->delay_ticks =
-                  reader.integer({"delay_ticks",
-                                  "ticks between the request of a force and its action, for the "
-                                  "stability bound that `check` prints"},
-                                 0, 10, section->delay_ticks);
+              reader.refuse_former("delay_ticks", "force_delay_s, a time in seconds");
+              if (reader.has("force_delay_s")) {
+                section->force_delay_s = reader.number(
+                    {"force_delay_s",
+                     "time between the request of a force and its action, for the stability bound "
+                     "that `check` prints; unset: a period of the loop"},
+                    {0.0, 0.01});
+              }
               section->accepted_without_release = reader.text(
                   {"accepted_without_release",
                    "for a program that does not report that it releases the force when requests "
@@ -167,8 +170,8 @@ class RemoteKind final : public DeviceKind {
             });
     return section;
   }
-  int delay_ticks(const protocols::Rig& rig) const override {
-    return dynamic_cast<const RemoteSection&>(*rig.section).delay_ticks;
+  double force_delay_s(const protocols::Rig& rig, double period_s) const override {
+    return dynamic_cast<const RemoteSection&>(*rig.section).force_delay_s.value_or(period_s);
   }
   std::function<void()> zero_force_exchange(const protocols::Rig& rig) const override {
     const auto opened =

@@ -166,7 +166,9 @@ class SpidarKind final : public DeviceKind {
                     *section.rotary_switch)};
   }
   // an exchange sends the tensions of the tick before
-  int delay_ticks(const protocols::Rig& /*rig*/) const override { return 1; }
+  double force_delay_s(const protocols::Rig& /*rig*/, double period_s) const override {
+    return period_s;
+  }
   bool is_there() const override {
     return std::ranges::any_of(device::usb_devices(), [](const device::UsbListing& listing) {
       return device::is_spidar(listing) && listing.may_open;

@@ -35,6 +35,7 @@ class FakeDevice : public device::Device {
   device::DeviceDetail detail() const noexcept override {
     device::DeviceDetail detail{last_force_n};
     detail.missed_replies = missed_replies;
+    detail.unanswered_s = unanswered_s;
     return detail;
   }
   core::TickFault begin() noexcept override { return fault_at_begin; }
@@ -51,6 +52,7 @@ class FakeDevice : public device::Device {
 
   int emergency_stops{0};
   int missed_replies{0};
+  double unanswered_s{0.0};
   double elapsed_s{0.0};
   core::TickFault fault_at_begin{core::TickFault::none};
   device::StopOutcome stop{device::StopOutcome::confirmed};
@@ -504,18 +506,21 @@ TEST_CASE("a machine that slept is a fault", "[device][loop][safety]") {
   CHECK(bench.hand.last_force_n == Vec3::Zero());
 }
 
-TEST_CASE("while replies are missing force fades by thirds", "[device][loop][safety]") {
+TEST_CASE("while replies are missing force fades, at any rate, to nothing within 10 ms",
+          "[device][loop][safety]") {
   Bench bench;
   device::HapticLoop loop = bench.loop();
   loop.run_ticks(5);
-  for (int missed = 1; missed <= 3; ++missed) {
+  for (const int missed : {1, 2, 5}) {
     bench.hand.missed_replies = missed;
+    bench.hand.unanswered_s = 0.002 * missed;
     loop.run_ticks(1);
-    CHECK(bench.hand.last_force_n.y() == Approx(6.0 * (3 - missed) / 3.0).margin(1e-12));
+    CHECK(bench.hand.last_force_n.y() == Approx(6.0 * (5 - missed) / 5.0).margin(1e-12));
     CHECK(bench.samples().back().missed_replies == missed);
   }
   CHECK(loop.report().bridged == 3);
   bench.hand.missed_replies = 0;
+  bench.hand.unanswered_s = 0.0;
   loop.run_ticks(1);
   CHECK(bench.hand.last_force_n.y() == Approx(6.0));
 }
@@ -531,9 +536,11 @@ TEST_CASE("after missing replies force rises again from where it faded to",
   loop.run_ticks(200);
   REQUIRE(bench.hand.last_force_n.y() == Approx(6.0));
   bench.hand.missed_replies = 2;
+  bench.hand.unanswered_s = device::max_unanswered_s * 2.0 / 3.0;
   loop.run_ticks(1);
   CHECK(bench.hand.last_force_n.y() == Approx(2.0));
   bench.hand.missed_replies = 0;
+  bench.hand.unanswered_s = 0.0;
   loop.run_ticks(10);
   CHECK(bench.hand.last_force_n.y() == Approx(2.0 + 6.0 * 0.1).epsilon(0.01));
   CHECK(bench.samples().back().late);  // an impact would be too weak

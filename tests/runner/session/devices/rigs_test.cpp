@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "protocols/reader/read_rig.hpp"
+#include "runner/session/devices/device_kind.hpp"
 #include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -89,6 +90,26 @@ TEST_CASE("a rig with hardware must have limits and a calibration", "[runner][ri
   }));
   INFO(from << " → " << to);
   CHECK_THAT(refusal(replaced(rig_text(), from, to), calibration_text()), Contains(said));
+}
+
+TEST_CASE("a limit that was counted in ticks is refused by the name of the time that it is now",
+          "[runner][rig]") {
+  CHECK_THAT(refusal(replaced(rig_text(), "max_late_s: 0.02", "max_late_ticks_in_a_row: 20"),
+                     calibration_text()),
+             Contains("loop.max_late_ticks_in_a_row: is a key of an earlier version: now it is "
+                      "max_late_s, a time in seconds") &&
+                 !Contains("is not a known key"));
+  const std::string remote = testing::contents(testing::shipped("rigs/remote.yaml"));
+  CHECK_THAT(refusal(replaced(remote, "max_reply_s: 0.003", "delay_ticks: 2"), ""),
+             Contains("remote.delay_ticks: is a key of an earlier version: now it is "
+                      "force_delay_s, a time in seconds"));
+  const auto delay_s_of = [&](const std::string& key, double period_s) {
+    const protocols::Rig rig =
+        runner::parse_rig(replaced(remote, "max_reply_s: 0.003", key), "a test");
+    return runner::kind_of(rig).force_delay_s(rig, period_s);
+  };
+  CHECK(delay_s_of("force_delay_s: 0.002", 2.5e-4) == 0.002);
+  CHECK(delay_s_of("max_reply_s: 0.003", 2.5e-4) == 2.5e-4);
 }
 
 TEST_CASE("a calibration that is another device's, incomplete or nonsense is refused",

@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "device/remote/remote_hand.hpp"
 #include "support/bridges/mock_board.hpp"
+#include "support/bridges/paced_pipe.hpp"
 #include "support/bridges/rogue_sender.hpp"
 #include "support/bridges/service_stand_in.hpp"
 #include "support/catch.hpp"
@@ -20,6 +24,7 @@
 #include "support/mapped_stand_in.hpp"
 #include "support/openhaptics/stand_in.hpp"
 #include "support/other_tapstudy.hpp"
+#include "support/staged_loop.hpp"
 using namespace tapstudy;
 using core::TickFault;
 using core::Vec3;
@@ -46,6 +51,10 @@ class BridgedDevice {
   virtual void unplug() = 0;
   virtual void lose_position() = 0;  // it is not a number
   virtual void answer_every_other() = 0;
+  // False where it cannot matter; why.
+  virtual bool plug_in_second() { return false; }
+  virtual bool has_forced_second() { return false; }
+  virtual std::string why_no_second() const { return "every call names the device it is for"; }
   // A device that numbers its samples, or measures its force.
   virtual testing::MockBoard* numbering() { return nullptr; }
   // Who lets go where the bridge, or the device's own program, is killed or hangs; empty: the
@@ -69,6 +78,7 @@ class SerialBoardRow final : public BridgedDevice {
   void lose_position() override { board_.lose_position(); }
   void answer_every_other() override { board_.answer_every_other(); }
   testing::MockBoard* numbering() override { return &board_; }
+  std::string why_no_second() const override { return "its port is opened once, by its path"; }
 
  private:
   testing::MockBoard board_;
@@ -134,6 +144,11 @@ class Inverse3Row final : public BridgedDevice {
   }
   void lose_position() override { service_.lose_position(); }
   void answer_every_other() override { service_.answer_every_other(); }
+  bool plug_in_second() override {
+    service_.plug_in_second();
+    return true;
+  }
+  bool has_forced_second() override { return service_.has_forced_another(); }
   std::string without_bridge() const override { return "the vendor's service must let go"; }
 
  private:
@@ -239,6 +254,11 @@ std::string found(BridgedDevice& row, void (BridgedDevice::*trouble)(), const st
   if (who.empty()) {
     wait_until([&] { return row.exerted_n() == 0.0; });
   }
+  row.largest_n();
+  for (int i = 0; i < 20; ++i) {
+    static_cast<void>(press(pressed.hand, pressed_n));
+  }
+  CHECK(row.largest_n() == 0.0);  // not for a moment
   return fmt::format("'{}', {}, stop unconfirmed", said, who.empty() ? "force off" : who);
 }
 std::string device_hung(BridgedDevice& row) {
@@ -289,7 +309,67 @@ std::string numbers_jump(BridgedDevice& row) {
   return "the reply was broken; force off";
 }
 
+// Where this program was kept waiting for 20 ms, the bridge let go, or the device's last sample is
+// too old, and the bridge says so, truthfully: then the trial begins anew.
+bool was_kept_waiting(TickFault found) {
+  return found == TickFault::force_released || found == TickFault::amplifier_off;
+}
+
+// Periods of a loop at 1 kHz.
+template <int Hundredths>
+std::string reply_after(BridgedDevice& row) {
+  constexpr double workspace_radius_m = 0.1;
+  constexpr int enough_ticks = 300;
+  const Bench bench{row};
+  auto owned = std::make_unique<testing::PacedPipe>(bench.port);
+  testing::PacedPipe& pipe = *owned;
+  device::RemoteHand hand{
+      bench.port, {std::chrono::milliseconds{3}, max_sample_age_s}, std::move(owned)};
+  testing::PacedClock clock{pipe};
+  pipe.reply_delay = 10'000 * Hundredths;
+  TickFault found = TickFault::force_released;
+  std::int64_t ticks = 0;
+  while (was_kept_waiting(found)) {
+    testing::StagedLoop stage{hand, clock, workspace_radius_m};
+    stage.tick(enough_ticks);
+    found = stage.loop->report().stopped_by;
+    ticks = stage.loop->report().ticks;
+  }
+  CHECK(found == (Hundredths > 100 ? TickFault::periods_missed : TickFault::none));
+  while (hand.zero_force() != StopOutcome::confirmed) {
+  }
+  return fmt::format("{} ticks, {}", ticks,
+                     found == TickFault::none ? "no fault" : core::to_text(found));
+}
+
 constexpr const char* tells_no_force = "does not apply: the device measures no force";
+
+// A frame goes to the device in each tick of 1 ms; taps of 60 ms, five a second.
+template <int LateMs>
+std::string force_told_late(BridgedDevice& row) {
+  if (row.numbering() == nullptr) {
+    return tells_no_force;
+  }
+  constexpr double dt_s = 1e-3;
+  constexpr int enough_ticks = 600;
+  Pressed pressed{row};
+  row.numbering()->tell_force_late(LateMs);
+  const auto force_at = [](int tick) {
+    const int in_tap = tick % 200;
+    return in_tap < 60 ? 2.5 * std::sin(std::numbers::pi * in_tap / 60.0) : 0.0;
+  };
+  TickFault found = TickFault::force_released;
+  while (was_kept_waiting(found)) {
+    found = TickFault::none;
+    for (int tick = 0; tick < enough_ticks && found == TickFault::none; ++tick) {
+      const int before = row.numbering()->samples();
+      found = press(pressed.hand, force_at(tick), dt_s);
+      wait_until([&] { return row.numbering()->samples() > before; });
+    }
+  }
+  CHECK(found == (LateMs > 20 ? TickFault::force_not_followed : TickFault::none));
+  return found == TickFault::none ? "believed" : core::to_text(found);
+}
 
 std::string never_lets_go(BridgedDevice& row) {
   if (row.numbering() == nullptr) {
@@ -316,6 +396,26 @@ std::string device_frozen(BridgedDevice& row) {
   while (press(pressed.hand, pressed_n + 1.0, 1e-3) != TickFault::position_frozen) {
   }
   return core::to_text(TickFault::position_frozen);
+}
+
+std::string second_device(BridgedDevice& row) {
+  Pressed pressed{row};
+  if (!row.plug_in_second()) {
+    return "does not apply: " + row.why_no_second();
+  }
+  core::HandState before;
+  core::HandState state;
+  static_cast<void>(pressed.hand.read(before, 1e-5));
+  std::this_thread::sleep_for(std::chrono::milliseconds{50});  // samples from before are too old
+  int fresh = 0;
+  for (int i = 0; i < 200; ++i) {
+    fresh += press(pressed.hand, 1.0 + pressed_n * (i % 2)) == TickFault::none ? 1 : 0;
+    static_cast<void>(pressed.hand.read(state, 1e-5));
+    CHECK((state.position_m - before.position_m).norm() < 1e-3);
+  }
+  CHECK(fresh > 0);
+  CHECK_FALSE(row.has_forced_second());
+  return "goes on with its own";
 }
 
 std::string second_sender(BridgedDevice& row) {
@@ -363,7 +463,17 @@ TEST_CASE(
                                       {"NaN", device_lost},
                                       {"every second sample", every_other},
                                       {"sample number jumps", numbers_jump},
+                                      {"reply after 0.9 periods", reply_after<90>},
+                                      {"reply after 1 period", reply_after<100>},
+                                      {"reply after 1.05 periods", reply_after<105>},
+                                      {"reply after 1.1 periods", reply_after<110>},
+                                      {"reply after 1.5 periods", reply_after<150>},
+                                      {"force told 0 ms late", force_told_late<0>},
+                                      {"force told 5 ms late", force_told_late<5>},
+                                      {"force told 15 ms late", force_told_late<15>},
+                                      {"force told 50 ms late", force_told_late<50>},
                                       {"never lets go", never_lets_go},
+                                      {"second device", second_device},
                                       {"second sender", second_sender}};
   for (const BridgeCell& cell : cells) {
     fmt::print("  {}\n", cell.name);

@@ -41,11 +41,12 @@ class SteadyClock : public device::TickClock {
 // The loop with a plate of 3000 N/m, on any device, to be driven into each of its states.
 class StagedLoop {
  public:
-  StagedLoop(device::Device& device, SteadyClock& its_clock) : clock{its_clock} {
+  StagedLoop(device::Device& device, SteadyClock& its_clock, double workspace_radius_m = 0.02)
+      : clock{its_clock} {
     renderers_.push_back(core::make_renderer(*core::find_technique("none"), core::RenderSettings{},
                                              core::PlateFace{0.3, 0.3}, nullptr));
     device::LoopSettings settings;
-    settings.gate = {{5.0, 5000.0}, 1.0, 0.02, 0.1, 0.1};
+    settings.gate = {{5.0, 5000.0}, 1.0, workspace_radius_m, 0.1, 0.1};
     settings.max_late_in_a_row = 20;
     settings.max_missed_share = 0.01;
     settings.max_stall = 10'000'000;

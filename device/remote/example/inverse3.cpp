@@ -163,7 +163,9 @@ class Inverse3 final : public bridge::Device {
     const Json message = Json::parse(beast::buffers_to_string(received_.data()), nullptr, false);
     received_.consume(received_.size());
     try {
-      take_device(message.at("inverse3").at(0));
+      for (const Json& device : message.at("inverse3")) {
+        take_device(device);
+      }
     } catch (const Json::exception&) {
       return;  // of another device, or of none: the sample before stays the newest
     }

@@ -223,7 +223,7 @@ class Server {
       introduction_.request = number_;
       send(socket_, &introduction_, sizeof introduction_, 0);
     } else {
-      exert(request.force_n);
+      exert(is_usable_ ? request.force_n : wire::Vector{});
       reply();
     }
   }
@@ -239,7 +239,8 @@ class Server {
                            : is_placed           ? "no samples from the device"
                                                  : "the device tells no position");
     }
-    if ((reply.status & wire::motors_on) == 0) {
+    is_usable_ = (reply.status & wire::motors_on) != 0;
+    if (!is_usable_) {
       exert({});
     }
     reply.status |= has_released_ ? wire::force_was_released : 0;
@@ -253,6 +254,7 @@ class Server {
   sockaddr_in sender_{};
   bool has_sender_ = false;
   bool has_released_ = true;
+  bool is_usable_ = true;  // the device, at its last sample: else not even a moment's force
   Clock::time_point heard_at_ = Clock::now();
   Clock::time_point empty_at_ = Clock::now();  // the socket's queue, the last time
   std::uint32_t number_ = 0;

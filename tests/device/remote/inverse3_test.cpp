@@ -1,4 +1,7 @@
+#include <optional>
+
 #include "device/remote/remote_hand.hpp"
+#include "support/bridges/rogue_sender.hpp"
 #include "support/bridges/service_stand_in.hpp"
 #include "support/catch.hpp"
 #include "support/example_bridge.hpp"
@@ -93,6 +96,50 @@ TEST_CASE("a service of the Inverse3 that hangs or ends is told, and gets a zero
   }
   CHECK(hand.text() == "no samples from the device");
   while (service.force_n() != Vec3::Zero()) {  // it hears, and answers nothing
+  }
+}
+
+// The peer's kernel tells: its queue holds what is not acknowledged. A state that a force answers
+// is acknowledged by that force, so that two forces are under way here, of which the second is
+// zero.
+TEST_CASE(
+    "a state that the Inverse3's bridge answers with no force is acknowledged once it is read",
+    "[device][remote]") {
+  ServiceStandIn service;
+  const std::uint16_t port = testing::free_port();
+  const testing::ExampleBridge bridge{port, service.command()};
+  testing::RogueSender tapstudy{port};
+  std::uint32_t number = 0;
+  const auto sample_after = [&](const Vec3& force_n) {
+    std::optional<device::RemoteReply> reply;
+    while (!reply) {  // the bridge may not be there yet
+      tapstudy.ask(++number, force_n);
+      reply = tapstudy.next_reply();
+    }
+    return reply->sample->number;
+  };
+  sample_after(Vec3::Zero());  // it is connected
+  for (int round = 0; round < 5; ++round) {
+    service.is_silent = false;
+    service.tell_state_unasked();
+    while (service.force_n().z() != 2.0) {
+      sample_after({0.0, 2.0, 0.0});
+    }
+    for (int i = 0; i < 100; ++i) {  // as the kernel sees it, a dialogue
+      sample_after({0.0, 2.0, 0.0});
+    }
+    service.is_silent = true;
+    for (int i = 0; i < 100; ++i) {
+      sample_after({0.0, 2.0, 0.0});
+    }
+    std::uint64_t before = sample_after(Vec3::Zero());
+    while (service.force_n() != Vec3::Zero()) {
+      before = sample_after(Vec3::Zero());
+    }
+    service.tell_state_unasked();
+    while (sample_after(Vec3::Zero()) == before) {
+    }
+    CHECK(service.unacknowledged_bytes() == 0);
   }
 }
 

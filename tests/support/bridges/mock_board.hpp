@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <limits>
 #include <string>
 #include <thread>
@@ -64,6 +65,9 @@ class MockBoard {
   void answer_every_other() { answers_every_other_ = true; }
   // Exerts, and tells, what it does now, whatever it is sent.
   void hold() { is_holding_ = true; }
+  int samples() const { return samples_sent_; }
+  // Tells what it exerted so many frames ago.
+  void tell_force_late(std::size_t frames) { told_late_ = frames; }
   void unplug() {
     if (obeying_.joinable()) {
       is_over_ = true;
@@ -121,12 +125,17 @@ class MockBoard {
     const float position_m = is_lost_ ? not_measured : 0.02F;
     const float tremor_m = tremor_m_ * std::sin(0.06F * static_cast<float>(sample));
     for (const float value : {0.01F + tremor_m, position_m, 0.03F, not_measured, not_measured,
-                              not_measured, 0.0F, force_n_.load(), 0.0F}) {
+                              not_measured, 0.0F, told_force_n(), 0.0F}) {
       add(content, value);
     }
     add(content, std::uint16_t{5});
     add(content, std::uint16_t{1});
     send(content);
+  }
+  float told_force_n() {
+    exerted_n_.push_front(force_n_);
+    exerted_n_.resize(std::min<std::size_t>(exerted_n_.size(), 100));
+    return exerted_n_.at(std::min(told_late_.load(), exerted_n_.size() - 1));
   }
   void obey() {
     Bytes received;
@@ -154,6 +163,7 @@ class MockBoard {
           introduce();
         } else if (!answers_every_other_ || ++asked_ % 2 == 0) {
           send_sample();
+          ++samples_sent_;
         }
       }
     }
@@ -173,6 +183,9 @@ class MockBoard {
   std::atomic<bool> is_holding_{false};
   std::atomic<bool> answers_every_other_{false};
   int asked_{0};
+  std::atomic<int> samples_sent_{0};
+  std::atomic<std::size_t> told_late_{0};
+  std::deque<float> exerted_n_;  // with the last frames, the newest first
   std::atomic<std::uint32_t> sample_{0};
   std::thread obeying_;
 };

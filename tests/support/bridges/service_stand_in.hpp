@@ -1,9 +1,13 @@
 #pragma once
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <cmath>
@@ -58,7 +62,20 @@ class ServiceStandIn {
   void tremble() { tremor_m_ = 1e-4; }
   void stand_still() { tremor_m_ = 0.0; }
   void lose_position() { is_lost_ = true; }
+  bool has_forced_another() const { return has_forced_another_; }
   void answer_every_other() { answers_every_other_ = true; }
+  // Told before the first, elsewhere.
+  void plug_in_second() { has_second_ = true; }
+  // A state that answers no force.
+  void tell_state_unasked() {
+    boost::asio::post(context_, [this] { tell_state(); });
+  }
+  // What it has sent and the bridge's kernel has not acknowledged.
+  int unacknowledged_bytes() const {
+    int bytes = -1;
+    ioctl(session_->next_layer().native_handle(), SIOCOUTQ, &bytes);
+    return bytes;
+  }
   std::atomic<bool> is_silent{false};
 
  private:
@@ -76,12 +93,11 @@ class ServiceStandIn {
       if (error) {
         return;
       }
-      const Json force = Json::parse(boost::beast::buffers_to_string(heard_.data()))
-                             .at("inverse3")[0]
-                             .at("commands")
-                             .at("set_cursor_force")
-                             .at("values");
+      const Json told = Json::parse(boost::beast::buffers_to_string(heard_.data())).at("inverse3");
       heard_.consume(heard_.size());
+      has_forced_another_ =
+          has_forced_another_ || told.size() != 1 || told[0].at("device_id") != "4711";
+      const Json& force = told[0].at("commands").at("set_cursor_force").at("values");
       force_n_[0] = force.at("x").get<double>();
       force_n_[1] = force.at("y").get<double>();
       force_n_[2] = force.at("z").get<double>();
@@ -95,6 +111,12 @@ class ServiceStandIn {
   void tell_state() {
     Json devices = Json::array();
     const double tremor_m = tremor_m_ * std::sin(0.06 * ++states_);
+    if (has_second_) {
+      devices.push_back({{"device_id", "4712"},
+                         {"state",
+                          {{"cursor_position", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}}},
+                           {"cursor_velocity", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}}}}}});
+    }
     if (has_device_) {
       devices.push_back(
           {{"device_id", "4711"},
@@ -116,6 +138,8 @@ class ServiceStandIn {
   std::atomic<double> largest_n_{0.0};
   std::atomic<double> tremor_m_{0.0};
   std::atomic<bool> is_lost_{false};
+  std::atomic<bool> has_second_{false};
+  std::atomic<bool> has_forced_another_{false};
   std::atomic<bool> answers_every_other_{false};
   int asked_{0};
   int states_{0};

@@ -19,11 +19,55 @@ std::uint64_t fingerprint_of(const Values& values, std::uint64_t before = 1) noe
   return before;
 }
 
+// Finds readings that go round in a circle of at most 256, to the bit: a driver that hands out a
+// ring of old samples, which nobody fills any more. Four rounds, of 128 readings at least, are no
+// chance.
+class ReadingCircle {
+ public:
+  void take(std::uint64_t reading) noexcept {
+    if (length_ == 0 || before(length_) != reading) {
+      length_ = newest_at(reading);
+      taken_ = changes_ = 0;
+    }
+    ++taken_;
+    changes_ += reading == before(1) ? 0 : 1;
+    newest_[reading % longest] = next_;
+    ring_[next_++ % longest] = reading;
+  }
+  bool goes_round() const noexcept {
+    return length_ > 1 && taken_ >= std::max(min_rounds * length_, min_taken);
+  }
+  // With so many changes that no hand, and no noise on a position at rest, could repeat them.
+  bool is_lively() const noexcept { return goes_round() && changes_ >= min_changes; }
+
+ private:
+  static constexpr std::size_t longest = 256;
+  static constexpr std::size_t min_rounds = 4;
+  static constexpr std::size_t min_taken = 128;
+  static constexpr std::size_t min_changes = 32;
+  std::uint64_t before(std::size_t readings) const noexcept {
+    return ring_[(next_ - readings) % longest];
+  }
+  // So many readings ago; 0: not among those that are remembered, of which each may have displaced
+  // another.
+  std::size_t newest_at(std::uint64_t reading) const noexcept {
+    const std::size_t readings = next_ - newest_[reading % longest];
+    return readings <= longest && before(readings) == reading ? readings : 0;
+  }
+  std::array<std::uint64_t, longest> ring_{};
+  std::array<std::size_t, longest> newest_{};  // by the reading's last digits
+  std::size_t next_{longest};
+  std::size_t length_{0};
+  std::size_t taken_{0};
+  std::size_t changes_{0};
+};
+
 // Finds a device that goes on replying while its position stands still to the bit: its encoders
 // have no supply, or the thread that reads them has died. So does a program that goes through old
 // samples again and again, such as two buffers of which neither is filled any more: a reading that
 // was there within the last 10 ms, to the bit, is no movement. A hand that trembles, at 8 to 12 Hz,
-// is back after 40 ms at the earliest.
+// is back after 40 ms at the earliest. Readings that go round in a longer circle are none, either;
+// in a lively one they are a fault as soon as there is force.
 //
 // A hand at rest, too, may leave every counter as it is for a while, so that only two things are a
 // fault.
@@ -48,12 +92,20 @@ std::uint64_t fingerprint_of(const Values& values, std::uint64_t before = 1) noe
 // Without force nothing is concluded: a grip that nobody holds lies still.
 class FrozenReading {
  public:
-  void forget() noexcept { *this = {}; }
+  FrozenReading() = default;
+  // max_held_s: 3 s, where every movement is in the reading.
+  explicit FrozenReading(double max_held_s) noexcept : max_held_s_{max_held_s} {}
+  void forget() noexcept { *this = FrozenReading{max_held_s_}; }
   // Once a reading, by its fingerprint, with the force commanded before it and the time since the
   // reading before.
   [[nodiscard]] bool judge(std::uint64_t reading, const core::Vec3& force_n,
                            double elapsed_s) noexcept {
-    if (!was_there(reading, elapsed_s)) {
+    circle_.take(reading);
+    const bool is_force = force_n.squaredNorm() >= min_force_n * min_force_n;
+    if (circle_.is_lively() && is_force) {
+      return true;
+    }
+    if (!was_there(reading, elapsed_s) && !circle_.goes_round()) {
       since_change_n_ = force_n;
       changed_s_ = held_s_ = 0.0;
       return false;
@@ -61,8 +113,8 @@ class FrozenReading {
     changed_s_ = (force_n - since_change_n_).squaredNorm() >= min_change_n * min_change_n
                      ? changed_s_ + elapsed_s
                      : 0.0;
-    held_s_ = force_n.squaredNorm() >= min_force_n * min_force_n ? held_s_ + elapsed_s : 0.0;
-    return changed_s_ > max_changed_s || held_s_ > max_held_s;
+    held_s_ = is_force ? held_s_ + elapsed_s : 0.0;
+    return changed_s_ > max_changed_s || held_s_ > max_held_s_;
   }
 
  private:
@@ -87,8 +139,9 @@ class FrozenReading {
   static constexpr double min_change_n = 1.0;
   static constexpr double max_changed_s = 0.05;
   static constexpr double min_force_n = 0.5;
-  static constexpr double max_held_s = 3.0;
+  double max_held_s_{3.0};
   std::array<Seen, remembered> seen_{};
+  ReadingCircle circle_;
   double now_s_{0.0};
   core::Vec3 since_change_n_{core::Vec3::Zero()};
   double changed_s_{0.0};

@@ -156,14 +156,15 @@ TickFault RemoteHand::begin() noexcept {
   exerted_.forget();
   velocity_.forget();
   reading_.forget();
+  position_.forget();
   samples_.forget();
   estimate_.forget();
   since_reply_s_ = since_sample_s_ = 0.0;
   is_holding_ = false;
   released_s_ = 0.0;
   detail_.missed_replies = 0;
-  return version_ == 3 ? ask_who_it_is() : TickFault::none;
   detail_.unanswered_s = 0.0;
+  return version_ == 3 ? ask_who_it_is() : TickFault::none;
 }
 
 // The other program may have been started anew since the last trial, with another device: limits
@@ -206,13 +207,16 @@ TickFault RemoteHand::fault_of_status(std::uint32_t status, double elapsed_s) no
 }
 
 // Versions 1 and 2 do not number their samples: one that is repeated is known by its bits. So is,
-// in any version, that of encoders without supply.
+// in any version, that of encoders without supply, even where a velocity that is measured apart
+// still has noise.
 TickFault RemoteHand::fault_of_motion(double elapsed_s) noexcept {
   const std::uint64_t position = fingerprint_of(reply_.hand.position_m);
   const std::uint64_t reading =
       is_velocity_measured_ ? fingerprint_of(reply_.hand.velocity_m_s, position) : position;
-  return reading_.judge(reading, force_n_, elapsed_s) ? TickFault::position_frozen
-                                                      : velocity_.judge(reply_.hand, elapsed_s);
+  const bool is_still = position_.judge(position, force_n_, elapsed_s);
+  return reading_.judge(reading, force_n_, elapsed_s) || is_still
+             ? TickFault::position_frozen
+             : velocity_.judge(reply_.hand, elapsed_s);
 }
 
 void RemoteHand::estimate_velocity(double elapsed_s) noexcept {
@@ -245,11 +249,11 @@ TickFault RemoteHand::read(core::HandState& hand, double elapsed_s) noexcept {
   const TickFault fault = ask();
   if (fault == TickFault::no_reply && held_.use_last_reading(hand, elapsed_s)) {
     detail_.missed_replies = held_.missed_replies();
+    detail_.unanswered_s = held_.unanswered_s();
     detail_.achieved_n.setConstant(untold);
     return TickFault::none;
   }
   if (fault != TickFault::none) {
-    detail_.unanswered_s = held_.unanswered_s();
     return fault;
   }
   detail_.missed_replies = 0;

@@ -78,6 +78,8 @@ class RemoteHand final : public Device {
   bool shows_no_force(SamplesSince& samples, Nanoseconds since) noexcept;
   void sleep_for(std::chrono::nanoseconds duration) noexcept;
 
+  // Positions of 0.1 mm alone: a hand that drifts by 50 um/s and more passes three of them.
+  static constexpr double max_still_s = 6.0;
   std::uint16_t port_;
   std::chrono::nanoseconds max_reply_;
   std::unique_ptr<DatagramPipe> pipe_;
@@ -90,6 +92,7 @@ class RemoteHand final : public Device {
   RemoteReply reply_;
   HeldHand held_;
   FrozenReading reading_;
+  FrozenReading position_{max_still_s};  // by itself, should the velocity go on
   ExertedForce exerted_;
   VelocityCheck velocity_;
   VelocityEstimate estimate_;

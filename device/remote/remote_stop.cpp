@@ -19,7 +19,8 @@ int RemoteHand::max_requests_of_a_stop() const noexcept {
 // Whether the reply to the last request, which carried zero force, shows that none is exerted any
 // more. In version 3 that takes two samples that the device took since the first such request.
 bool RemoteHand::shows_no_force(SamplesSince& samples, Nanoseconds since) noexcept {
-  const bool is_exerted = detail_.achieved_n.norm() >= noticeable_n;  // false if not reported, NaN
+  const bool is_exerted = detail_.achieved_n.hasNaN() ? exerted_.has_told()  // and no longer does
+                                                      : detail_.achieved_n.norm() >= noticeable_n;
   if (!reply_.sample) {
     return !is_exerted;
   }

@@ -41,8 +41,11 @@ TickFault ExertedForce::judge(const core::Vec3& commanded_n, const core::Vec3& r
   remember(commanded_n, elapsed_s);
   const double commanded = commanded_n.norm();
   const double reported = reported_n.norm();
-  if (std::isnan(reported)) {
-    return TickFault::none;
+  const bool is_told = !std::isnan(reported);
+  has_told_ = has_told_ || is_told;
+  count(untold_s_, has_told_ && !is_told, elapsed_s);
+  if (!is_told) {
+    return untold_s_ > max_report_lag_s ? TickFault::force_not_followed : TickFault::none;
   }
   const double explained_n = reported > 0.0 ? largest_along(reported_n / reported) : 0.0;
   const bool is_force = commanded >= noticeable_n;

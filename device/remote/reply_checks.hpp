@@ -15,11 +15,16 @@ inline constexpr double max_report_lag_s = 0.02;
 // Compares the force that a device reports with those that it was sent within max_report_lag_s.
 // Faults are a report more than twice and 1 N above the largest of them along it, for 3 ms; one
 // against the force while none was sent that way, for 6 ms; and one of almost nothing for 30 ms
-// longer than the lag. Margins are wide, since devices measure coarsely. One that reports nothing
-// (NaN) is not judged.
+// longer than the lag. Margins are wide, since devices measure coarsely. One that has never
+// reported any (NaN) is not judged; one that no longer does for longer than the lag is a fault.
 class ExertedForce {
  public:
-  void forget() noexcept { *this = {}; }
+  void forget() noexcept {
+    const bool has_told = has_told_;
+    *this = {};
+    has_told_ = has_told;
+  }
+  bool has_told() const noexcept { return has_told_; }
   // Once a reply, with what was commanded when the device reported, and the time since the last.
   [[nodiscard]] core::TickFault judge(const core::Vec3& commanded_n, const core::Vec3& reported_n,
                                       double elapsed_s) noexcept;
@@ -38,6 +43,8 @@ class ExertedForce {
   double above_s_{0.0};
   double against_s_{0.0};
   double without_s_{0.0};
+  bool has_told_{false};  // in this session
+  double untold_s_{0.0};
 };
 
 // Compares the velocity that a device reports with the change of its position, since the strength

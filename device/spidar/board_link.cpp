@@ -143,7 +143,8 @@ void BoardLink::take_over_from_guardian() noexcept {
   }
 }
 
-StopOutcome BoardLink::stop() noexcept {
+StopOutcome BoardLink::stop(bool is_counting) noexcept {
+  is_counting_ = is_counting;
   take_over_from_guardian();
   bool has_late_reply = missed_replies_ > 0;
   for (int i = 0; i < zero_force_packets; ++i) {
@@ -152,7 +153,8 @@ StopOutcome BoardLink::stop() noexcept {
     }
     const ZeroExchange zeros = exchange_zeros(board_, pipe_);
     has_late_reply = has_late_reply || zeros.outcome == UsbOutcome::timed_out;
-    is_force_off_ = zeros.is_confirmed;  // the last one counts: earlier replies may be stale
+    is_force_off_ =
+        zeros.is_confirmed && is_counting;  // the last one counts: earlier replies may be stale
   }
   if (has_late_reply) {
     pipe_.drain();  // else every later reply would be one exchange old
@@ -171,6 +173,6 @@ StopOutcome BoardLink::stop() noexcept {
 }
 
 bool BoardLink::is_force_off() const noexcept {
-  return is_force_off_ || (watchdog_ != nullptr && watchdog_->is_zero_confirmed());
+  return is_force_off_ || (is_counting_ && watchdog_ != nullptr && watchdog_->is_zero_confirmed());
 }
 }  // namespace tapstudy::device

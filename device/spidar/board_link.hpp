@@ -24,9 +24,12 @@ class BoardLink {
   [[nodiscard]] core::TickFault exchange(const DacCounts& outputs, double elapsed_s) noexcept;
   bool can_miss_a_reply() const noexcept { return reading_.echo.has_value(); }
   const BoardReading& reading() const noexcept { return reading_; }
+  // Whether the last reply carries what was sent last; true where the board does not echo.
+  bool is_last_echoed() const noexcept { return reading_.echo.value_or(sent_) == sent_; }
   // Sets all outputs to zero, three times; unconfirmed if no reply says so. The guardian then
-  // repeats it until one does.
-  StopOutcome stop() noexcept;
+  // repeats it until one does. The echo of a board that has stopped counting confirms nothing: what
+  // sends it may be all that is alive.
+  StopOutcome stop(bool is_counting) noexcept;
   bool is_force_off() const noexcept;
 
  private:
@@ -47,5 +50,6 @@ class BoardLink {
   std::uint64_t guardian_rounds_{0};
   double guardian_silent_s_{0.0};
   bool is_force_off_{true};
+  bool is_counting_{true};
 };
 }  // namespace tapstudy::device

@@ -84,9 +84,10 @@ TickFault SpidarG6::home() noexcept {
 TickFault SpidarG6::begin() noexcept {
   held_.forget();
   counts_.forget();
+  is_frozen_ = false;
   detail_.missed_replies = 0;
-  without_voltage_s_ = 0.0;
   detail_.unanswered_s = 0.0;
+  without_voltage_s_ = 0.0;
   return link_.begin_watch();
 }
 
@@ -104,15 +105,15 @@ TickFault SpidarG6::read(core::HandState& hand, double elapsed_s) noexcept {
   if (fault == TickFault::no_reply && link_.can_miss_a_reply() &&
       held_.use_last_reading(hand, elapsed_s)) {
     detail_.missed_replies = held_.missed_replies();
-    return TickFault::none;
     detail_.unanswered_s = held_.unanswered_s();
+    return TickFault::none;
   }
   if (fault != TickFault::none) {
     return fault;
   }
   detail_.missed_replies = 0;
-  if (const TickFault off = fault_of_amplifier(elapsed_s); off != TickFault::none) {
   detail_.unanswered_s = 0.0;
+  if (const TickFault off = fault_of_amplifier(elapsed_s); off != TickFault::none) {
     return off;
   }
   return follow(hand, std::max(std::exchange(unread_s_, 0.0), min_step_s));
@@ -152,7 +153,8 @@ double SpidarG6::longest_step_m() const noexcept {
 }
 
 TickFault SpidarG6::fault_of_counters(double elapsed_s) noexcept {
-  if (counts_.judge(fingerprint_of(counters_.counts()), force_n_, elapsed_s)) {
+  is_frozen_ = counts_.judge(fingerprint_of(counters_.counts()), force_n_, elapsed_s);
+  if (is_frozen_) {
     return TickFault::position_frozen;
   }
   return longest_step_m() > settings_.limits.max_string_speed_m_s * elapsed_s
@@ -198,11 +200,16 @@ TickFault SpidarG6::write(const core::Vec3& force_n) noexcept {
   return tensions.is_optimal ? TickFault::none : TickFault::tensions_unsolved;
 }
 
-// The strings are kept taut, so that the pose remains known.
+// The strings are kept taut, so that the pose remains known. A board may echo the request before.
 StopOutcome SpidarG6::zero_force() noexcept {
-  const bool is_sent =
-      write(core::Vec3::Zero()) == TickFault::none && exchange_patiently() == TickFault::none;
-  if (!is_sent) {
+  constexpr int exchanges = 2;
+  TickFault fault = write(core::Vec3::Zero());
+  bool is_echoed = false;
+  for (int i = 0; i < exchanges && fault == TickFault::none && !is_echoed; ++i) {
+    fault = exchange_patiently();
+    is_echoed = fault == TickFault::none && link_.is_last_echoed();
+  }
+  if (!is_echoed) {
     return emergency_stop();
   }
   link_.end_watch();
@@ -212,6 +219,6 @@ StopOutcome SpidarG6::zero_force() noexcept {
 StopOutcome SpidarG6::emergency_stop() noexcept {
   is_homed_ = false;
   dac_counts_ = {};
-  return link_.stop();
+  return link_.stop(!is_frozen_);
 }
 }  // namespace tapstudy::device

@@ -89,6 +89,7 @@ class SpidarG6 final : public Device {
   HeldHand held_;
   core::Vec3 force_n_{core::Vec3::Zero()};  // the last that was written
   FrozenReading counts_;
+  bool is_frozen_{false};
   double unread_s_{0.0};  // since the position was last read
   double without_voltage_s_{0.0};
   DeviceDetail detail_;

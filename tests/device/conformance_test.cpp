@@ -114,7 +114,7 @@ class SpidarRow final : public BackEnd {
         return Expected{{TickFault::no_reply}, false};
       case Trouble::frozen:
         on_bus_.hardware.stop_counting();
-        return Expected{{TickFault::position_frozen}};
+        return Expected{{TickFault::position_frozen}, false};
       case Trouble::slow_reply:
         on_bus_.bus.reply_after(std::chrono::nanoseconds{std::llround(1e6 * cell.amount)});
         return cell.amount > 1.0 ? Expected{{TickFault::periods_missed}} : no_fault;
@@ -304,9 +304,15 @@ class SpidarRow final : public BackEnd {
       on_bus_.hardware.jump(3, 100);
       return Expected{{TickFault::strings_disagree}};
     }
-    if (name == "two old samples in turn") {
-      on_bus_.hardware.repeat_two_samples();
-      return Expected{{TickFault::position_frozen}};
+    if (name == "two old samples in turn" || name == "32 old samples in turn") {
+      on_bus_.hardware.repeat_samples(name.starts_with("two") ? 2 : 32);
+      return Expected{{TickFault::position_frozen}, false};
+    }
+    if (name == "keeps its force, and replies as if it obeyed") {
+      return is_sh4()
+                 ? "its echo is right, and a string that is pulled makes a voltage itself: for "
+                   "this there is the relay"
+                 : "it measures no force: for this there is the relay";
     }
     if (name == "position jumps") {
       on_bus_.hardware.hold_at({0.3, 0.3, 0.0});
@@ -469,12 +475,15 @@ class RemoteRow final : public BackEnd {
     };
     static const std::vector<Told> all{
         {"two old samples in turn", two_buffers, 1, TickFault::position_frozen},
+        {"32 old samples in turn", ring, 1, TickFault::position_frozen},
+        {"position dead, velocity noisy", dead_encoders, 1, TickFault::position_frozen},
         {"an old sample under new numbers", old_sample, 3, TickFault::position_frozen},
         {"motors without power", no_power, 2, TickFault::amplifier_off},
         {"exerts 80 N", overload, 2, TickFault::force_not_followed, false},
         {"exerts no force", limp, 2, TickFault::force_not_followed},
         {"force reversed", reversed, 2, TickFault::force_not_followed},
         {"force along another axis", sideways, 2, TickFault::force_not_followed},
+        {"force no longer told", tells_no_more, 2, TickFault::force_not_followed, false},
         {"half of a force", half_known, 2, TickFault::bad_reply, false},
         {"another version", falls_back, 2, TickFault::bad_reply, false},
         {"releases in the trial", releases, 2, TickFault::force_released},
@@ -484,6 +493,9 @@ class RemoteRow final : public BackEnd {
         {"quaternion of no unit", no_unit, 3, TickFault::bad_reply, false},
         {"text with an escape", rude_text, 3, TickFault::bad_reply, false}};
     const auto found = std::ranges::find(all, name, &Told::name);
+    if (name == "keeps its force, and replies as if it obeyed") {
+      return "whatever a program tells is believed, if nothing contradicts it";
+    }
     if (found == all.end()) {
       return "no USB, no strings";
     }
@@ -623,8 +635,10 @@ std::vector<Cell> all_cells() {
     cells.push_back({name, Trouble::of_one_back_end});
   }
   for (const char* const name :
-       {"two old samples in turn", "an old sample under new numbers", "exerts 80 N",
-        "exerts no force", "force reversed", "force along another axis", "releases in the trial"}) {
+       {"two old samples in turn", "32 old samples in turn", "position dead, velocity noisy",
+        "an old sample under new numbers", "keeps its force, and replies as if it obeyed",
+        "force no longer told", "exerts 80 N", "exerts no force", "force reversed",
+        "force along another axis", "releases in the trial"}) {
     cells.push_back({name, Trouble::of_one_back_end, 0.0, true});
   }
   return cells;
@@ -653,7 +667,7 @@ struct Outcome {
 };
 
 enum class State { armed, rendering, stopping };
-constexpr int enough_ticks = 3300;  // a position may stand still for 3 s
+constexpr int enough_ticks = 6300;  // a position may stand still for 6 s
 
 Outcome outcome_of(const Row& row, const Cell& cell, State state) {
   const std::unique_ptr<BackEnd> back_end = row.make();

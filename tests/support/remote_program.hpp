@@ -21,15 +21,17 @@ enum class RemoteTrouble {
   mute,  // obeys, and does not answer
   short_reply,
   old_number,
-  twice,         // sends each reply two times
-  not_a_number,  // the position
-  jump,          // of the position
-  dead_thread,   // the newest sample stays the newest
-  old_sample,    // is told under new numbers
-  two_buffers,   // of old samples are told in turn, under new numbers
-  samples_jump,  // their numbers
-  samples_fall,  // likewise, to before
-  too_old,       // the age of the sample
+  twice,          // sends each reply two times
+  not_a_number,   // the position
+  jump,           // of the position
+  dead_thread,    // the newest sample stays the newest
+  old_sample,     // is told under new numbers
+  two_buffers,    // of old samples are told in turn, under new numbers
+  ring,           // of 32 old samples, likewise
+  dead_encoders,  // the position stands still, and the velocity that is measured apart is noise
+  samples_jump,   // their numbers
+  samples_fall,   // likewise, to before
+  too_old,        // the age of the sample
   no_power,
   must_be_homed,
   overload,       // exerts far more than it was sent
@@ -38,6 +40,7 @@ enum class RemoteTrouble {
   reversed,       // exerts the force the other way round
   sideways,       // exerts it along another axis
   half_known,     // tells of one axis of the force only
+  tells_no_more,  // what it exerts
   falls_back,     // to version 1
   coarse,         // its gauge is noisy
   releases,       // as after a silence
@@ -206,17 +209,20 @@ class RemoteProgram final : public device::DatagramPipe {
     return 2.0 * std::numbers::pi * taps_a_second * 1e-9 *
            static_cast<double>(now_ - tapping_since_);
   }
-  double told_velocity_m_s() const {
+  double told_velocity_m_s() {
     constexpr double phase_a_second = 2.0 * std::numbers::pi * 2.5;
-    return velocity_m_s + 0.5 * tap_m_ * phase_a_second * std::sin(tap_phase());
+    const double noise_m_s = trouble == RemoteTrouble::dead_encoders ? 1e-4 * rng_.normal() : 0.0;
+    return velocity_m_s + noise_m_s + 0.5 * tap_m_ * phase_a_second * std::sin(tap_phase());
   }
   double trembling_m() const {
     constexpr double tremor_a_second = 2.0 * std::numbers::pi * 9.0;
     constexpr double between_buffers_m = 1e-5;
+    const bool is_still =
+        trouble == RemoteTrouble::old_sample || trouble == RemoteTrouble::dead_encoders;
     return trouble == RemoteTrouble::two_buffers ? (answered % 2 == 0 ? between_buffers_m : 0.0)
-           : trouble == RemoteTrouble::old_sample
-               ? 0.0
-               : tremor_m * std::sin(tremor_a_second * 1e-9 * static_cast<double>(now_));
+           : trouble == RemoteTrouble::ring ? between_buffers_m * std::sin(0.1 * (answered % 32))
+           : is_still                       ? 0.0
+                      : tremor_m * std::sin(tremor_a_second * 1e-9 * static_cast<double>(now_));
   }
   double told_height_m() const {
     const double tapping_m = 0.5 * tap_m_ * (1.0 - std::cos(tap_phase()));
@@ -226,6 +232,9 @@ class RemoteProgram final : public device::DatagramPipe {
   }
   device::wire::Vector told_force_n() {
     const double told_n = measured_n();
+    if (trouble == RemoteTrouble::tells_no_more) {
+      return {nan, nan, nan};
+    }
     if (trouble == RemoteTrouble::sideways) {
       return {told_n, 0.0, 0.0};
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 
 #include "results/store_error.hpp"
@@ -18,6 +19,15 @@ bool has_late_impact(const TrialResult& result) {
   return std::ranges::any_of(result.trace.events, [](const results::EventRow& event) {
     return event.kind == "late_impact";
   });
+}
+
+// Whether a fault is found some time after it began, up to seconds: an answer given just before may
+// be to what nobody felt.
+bool is_found_late(core::TickFault fault) {
+  using enum core::TickFault;
+  constexpr std::array all{position_frozen, force_not_followed, velocity_wrong,
+                           periods_missed,  too_late,           amplifier_off};
+  return std::ranges::find(all, fault) != all.end();
 }
 }  // namespace
 
@@ -259,6 +269,9 @@ TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, const C
   const protocols::Block& block = parts_.protocol.block(trial.block);
   Presentation presentation = present({trial, prompt, attempts_[trial.number] + 1}, parts_);
   ticks_ += presentation.result.loop.ticks;
+  if (is_found_late(presentation.result.loop.stopped_by)) {
+    presentation.answer.reset();
+  }
   const TrialEnding ending = ending_of(presentation, trial);
   if (ending == TrialEnding::answered) {
     ask_confidence(block, trial.number, *presentation.answer);

@@ -322,6 +322,23 @@ TEST_CASE("a late reply at the end of a trial does not cost the grip's home",
   CHECK(bench.spidar.is_homed());
 }
 
+TEST_CASE("a trial ends once the board echoes that it has no force, be it a request late",
+          "[device][spidar][safety][usb]") {
+  const bool echoes_before = GENERATE(false, true);
+  Bench bench;
+  if (echoes_before) {
+    bench.hardware.echo_the_request_before();
+  }
+  bench.start();
+  for (int i = 0; i < 50; ++i) {
+    REQUIRE(bench.tick({3, 0, 0.01 * i}) == TickFault::none);
+  }
+  bench.bus.forget_requests();
+  CHECK(bench.spidar.zero_force() == device::StopOutcome::confirmed);
+  CHECK(bench.bus.requests().size() == (echoes_before ? 2 : 1));
+  CHECK(bench.spidar.is_homed());
+}
+
 TEST_CASE("after a late reply the position is again that of the tick, though nothing else changes",
           "[device][spidar][usb]") {
   Bench bench;

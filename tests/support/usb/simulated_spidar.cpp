@@ -49,7 +49,10 @@ void SimulatedSpidar::pass_a_tick() {
 std::array<std::int64_t, 8> SimulatedSpidar::counters() const {
   if (stopped_at_) {
     std::array<std::int64_t, 8> all = *stopped_at_;
-    all.front() += ticks_ % 2 * between_samples_;
+    const int sample = ticks_ % repeated_samples_;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      all.at(i) += sample >> i & 1;
+    }
     return all;
   }
   std::array<std::int64_t, 8> all{};

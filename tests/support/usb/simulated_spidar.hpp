@@ -32,9 +32,10 @@ class SimulatedSpidar {
   void jump(std::size_t string, int counts) { slip_.at(string) += counts; }
   void echo_wrongly() { echoes_wrongly_ = true; }
   void stop_counting() { stopped_at_ = counters(); }
-  void repeat_two_samples() {
+  // At most 256, which differ by a count of some strings.
+  void repeat_samples(int how_many) {
     stop_counting();
-    between_samples_ = 2;
+    repeated_samples_ = how_many;
   }
   // Which of the two a real board does is not known.
   void echo_the_request_before() { echoes_the_request_before_ = true; }
@@ -59,7 +60,7 @@ class SimulatedSpidar {
   int rotary_switch_{3};
   std::array<int, 8> slip_{};
   std::optional<std::array<std::int64_t, 8>> stopped_at_;
-  std::int64_t between_samples_{0};
+  int repeated_samples_{1};
   int ticks_{0};
   bool is_rigid_{false};
   bool is_amplifier_on_{true};

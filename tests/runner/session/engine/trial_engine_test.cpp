@@ -20,10 +20,12 @@
 using namespace tapstudy;
 
 namespace {
-// A loop whose first trials each have an impact just after a late tick, or stall when answered.
+// A loop whose first trials each have an impact just after a late tick, or stall when answered; or
+// whose every trial ends in a fault after the answer.
 struct Troubles {
   int late_trials{0};
   int stalled_trials{0};
+  core::TickFault fault{core::TickFault::none};
 };
 class TroubledTrialLoop final : public runner::TrialLoop {
  public:
@@ -48,6 +50,7 @@ class TroubledTrialLoop final : public runner::TrialLoop {
     if (troubles_.late_trials-- > 0) {
       result.trace.events.push_back({0.5, "late_impact", 0.3});
     }
+    result.loop.stopped_by = troubles_.fault;
     return result;
   }
 
@@ -78,16 +81,19 @@ struct Study {
     store.add_session(session);
   }
   void run(Troubles troubles) {
-    TroubledTrialLoop loop{troubles};
     std::set<int> done;
+    CHECK_FALSE(run(troubles, done));
+    CHECK(done.size() == schedule.size());
+  }
+  std::optional<runner::Interruption> run(Troubles troubles, std::set<int>& done) {
+    TroubledTrialLoop loop{troubles};
     results::Recorder recorder{store};
     runner::SessionStates states{session.id, [] { return 0.0; }};
     runner::Operator nobody;
     testing::NoRealPlates no_plates;
     runner::TrialEngine engine{{protocol, models, loop, no_plates, participant, nobody, states},
                                recorder};
-    CHECK_FALSE(engine.run(schedule, done));
-    CHECK(done.size() == schedule.size());
+    return engine.run(schedule, done);
   }
 
   testing::TempDirectory directory;
@@ -227,6 +233,31 @@ TEST_CASE("a trial whose time is over comes again, or is stored without an answe
   CHECK(given_up.answers.empty());
   CHECK(given_up.done.size() == 2);
   CHECK(given_up.timed_out == std::vector<int>{1, 2});
+}
+
+TEST_CASE(
+    "an answer before a fault that is found late is none, since nobody knows what was felt; one "
+    "before any other fault is kept",
+    "[runner][session][threads]") {
+  using enum core::TickFault;
+  const auto [fault, is_kept] = GENERATE(table<core::TickFault, bool>({{no_reply, true},
+                                                                       {device_gone, true},
+                                                                       {stop_unconfirmed, true},
+                                                                       {position_frozen, false},
+                                                                       {force_not_followed, false},
+                                                                       {velocity_wrong, false},
+                                                                       {periods_missed, false},
+                                                                       {too_late, false},
+                                                                       {amplifier_off, false}}));
+  CAPTURE(core::to_text(fault));
+  Study study{0};
+  std::set<int> done;
+  const auto interruption = study.run({.fault = fault}, done);
+  REQUIRE(interruption);
+  CHECK(interruption->fault == fault);
+  CHECK(interruption->is_answered == is_kept);
+  CHECK(done.size() == (is_kept ? 1U : 0U));
+  CHECK(results::stored_answers(study.store).size() == done.size());
 }
 
 TEST_CASE("an answer given while nothing is rendered is no answer: the trial is presented again",

@@ -1,6 +1,7 @@
 #include "analysis/modal/decay/decay_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -173,6 +174,18 @@ Eigen::MatrixXd DecayModel::jacobian(const State& state) const {
     result.col(2 * k + 1) = stacked(Complex{0.0, 1.0} * slopes.minus) / length_;
   }
   result.rightCols(2 * poles_ + nuisance_.cols()) = state.basis;
+  return result;
+}
+
+Eigen::MatrixXd DecayModel::column_slopes(const State& state, Eigen::Index pole) const {
+  const std::array<Complex, 2> shares{Complex{1.0, 0.0}, Complex{0.0, -1.0}};  // of cosine and sine
+  Eigen::MatrixXd result{data_.size(), 4};
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const CutExponential slopes = cut_exponential_slope(shares.at(static_cast<std::size_t>(i)),
+                                                        log_of_pole(state.logs, pole), spectrum_);
+    result.col(i) = stacked(slopes.plus) / length_;
+    result.col(2 + i) = stacked(Complex{0.0, 1.0} * slopes.minus) / length_;
+  }
   return result;
 }
 

@@ -39,6 +39,8 @@ class DecayModel {
   State at(const Eigen::VectorXd& logs) const;
   // d model / d unknowns: poles, then shares
   Eigen::MatrixXd jacobian(const State& state) const;
+  // The derivatives of one pole's two columns of the basis, by Re of its log, then by Im: four.
+  Eigen::MatrixXd column_slopes(const State& state, Eigen::Index pole) const;
 
   // The logarithms at which a fit can begin: growing poles are limited to a factor of e^30 over the
   // decay.

@@ -9,6 +9,7 @@
 
 #include "analysis/modal/decay/decay_fit.hpp"
 #include "analysis/modal/decay/decay_model.hpp"
+#include "core/algebra/blas.hpp"
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -67,16 +68,34 @@ class Series {
     return model_.at(logs);
   }
 
-  // d residual / d parameters by differences, small beside the resolution of the decay.
-  Eigen::MatrixXd slopes(const Eigen::VectorXd& parameters, const DecayModel::State& here) const {
-    const double step = 1e-5 * model_.rate_hz() / model_.length();
-    Eigen::MatrixXd result{here.residual.size(), parameters.size()};
-    for (Eigen::Index i = 0; i < parameters.size(); ++i) {
-      Eigen::VectorXd moved = parameters;
-      moved[i] += step;
-      result.col(i) = (at(moved).residual - here.residual) / step;
+  // d residual / d parameters: of r = y - B c, c = B^+ y, it is -(1 - B B^+) dB c - B^+' dB' r
+  // (Golub & Pereyra 1973).
+  Eigen::MatrixXd slopes(const DecayModel::State& here) const {
+    const double seconds = model_.length() / model_.rate_hz();
+    const auto parameters = 2 * std::ssize(poles_);
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(here.basis.rows(), parameters);
+    Eigen::MatrixXd towards = Eigen::MatrixXd::Zero(here.basis.cols(), parameters);
+    Eigen::Index exponential = 0;
+    for (Eigen::Index k = 0; k < std::ssize(poles_); ++k) {
+      for (int term = 1; term <= poles_[static_cast<std::size_t>(k)].terms; ++term) {
+        const Eigen::MatrixXd columns = model_.column_slopes(here, exponential);
+        const Eigen::Vector2d shares = here.shares.segment<2>(2 * exponential);
+        const Eigen::Vector2d per_parameter{term * seconds, seconds};
+        for (Eigen::Index part = 0; part < 2; ++part) {
+          const auto slope = per_parameter[part] * columns.middleCols<2>(2 * part);
+          moved.col(2 * k + part) += slope * shares;
+          towards.col(2 * k + part).segment<2>(2 * exponential) = slope.transpose() * here.residual;
+        }
+        ++exponential;
+      }
     }
-    return result;
+    const Eigen::VectorXd per_size =
+        here.basis.colwise().norm().cwiseMax(1e-300).cwiseInverse().transpose();
+    const Eigen::MatrixXd basis = here.basis * per_size.asDiagonal();
+    const Eigen::MatrixXd explained =
+        core::pseudo_inverse(core::inner_products(basis, basis)) *
+        (core::inner_products(basis, moved) - per_size.asDiagonal() * towards);
+    return core::combination(basis, explained) - moved;
   }
 
   double values() const { return static_cast<double>(model_.data().size()); }
@@ -118,11 +137,10 @@ class SharedSeries {
     return sum;
   }
 
-  std::vector<Equations> equations(const Eigen::VectorXd& parameters,
-                                   const std::vector<DecayModel::State>& states) const {
+  std::vector<Equations> equations(const std::vector<DecayModel::State>& states) const {
     std::vector<Equations> all;
     for (std::size_t i = 0; i < states.size(); ++i) {
-      const Eigen::MatrixXd slopes = series_[i].slopes(parameters, states[i]);
+      const Eigen::MatrixXd slopes = series_[i].slopes(states[i]);
       const double variance =
           std::max(states[i].sum_of_squares, least_squares(i)) / series_[i].values();
       all.push_back({slopes.transpose() * slopes / variance,
@@ -169,7 +187,7 @@ bool settle(const SharedSeries& series, Eigen::VectorXd& parameters,
             std::vector<DecayModel::State>& states) {
   double damping = 1e-3;
   double before = series.deviance(states);
-  Equations sum = sum_of(series.equations(parameters, states), parameters.size());
+  Equations sum = sum_of(series.equations(states), parameters.size());
   for (int i = 0; i < most_resting_steps; ++i) {
     const Eigen::VectorXd step = step_from(sum, damping);
     const Eigen::VectorXd moved = parameters + step;
@@ -188,7 +206,7 @@ bool settle(const SharedSeries& series, Eigen::VectorXd& parameters,
           return true;
         }
         damping = std::max(damping / 5.0, 1e-9);
-        sum = sum_of(series.equations(parameters, states), parameters.size());
+        sum = sum_of(series.equations(states), parameters.size());
         continue;
       }
     }
@@ -267,7 +285,7 @@ std::vector<Pole> without_each_impact(const std::vector<NearbyDecay>& decays,
                                       const RestingFit& fit) {
   const SharedSeries series{decays, fit.poles};
   const Eigen::VectorXd parameters = parameters_of(fit.poles);
-  const std::vector<Equations> all = series.equations(parameters, series.at(parameters));
+  const std::vector<Equations> all = series.equations(series.at(parameters));
   const Equations sum = sum_of(all, parameters.size());
   std::map<int, std::vector<Equations>> by_impact;
   for (std::size_t i = 0; i < decays.size(); ++i) {
@@ -289,8 +307,7 @@ std::vector<Pole> without_each_impact(const std::vector<NearbyDecay>& decays,
 Pole noise_errors(const std::vector<NearbyDecay>& decays, const RestingFit& fit) {
   const SharedSeries series{decays, fit.poles};
   const Eigen::VectorXd parameters = parameters_of(fit.poles);
-  const Equations sum =
-      sum_of(series.equations(parameters, series.at(parameters)), parameters.size());
+  const Equations sum = sum_of(series.equations(series.at(parameters)), parameters.size());
   const Eigen::Matrix2d covariance = core::pseudo_inverse(sum.matrix).topLeftCorner<2, 2>();
   return errors_of_pole({parameters[0], parameters[1]}, covariance, 1.0);
 }

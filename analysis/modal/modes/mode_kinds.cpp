@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "analysis/modal/modes/distinct_modes.hpp"
+#include "analysis/modal/modes/one_resonance.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -82,23 +83,85 @@ void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes) {
   }
 }
 
-void judge_single_decay(std::vector<RepeatedMode>& modes) {
+namespace {
+double bandwidth_of(const RepeatedMode& mode) {
+  return 2.0 * mode.damping_ratio.value * hz(mode);
+}
+
+bool is_weak_beside(const RepeatedMode& mode, const RepeatedMode& other) {
   constexpr double weak = 0.1;
   constexpr double beside = 1.5;
+  return mode.amplitude < weak * other.amplitude &&
+         std::max(hz(mode), hz(other)) < beside * std::min(hz(mode), hz(other));
+}
+
+bool may_be_part_of(const RepeatedMode& mode, const RepeatedMode& other) {
+  return mode.amplitude < other.amplitude &&
+         std::abs(hz(mode) - hz(other)) < bandwidth_of(mode) + bandwidth_of(other) &&
+         bandwidth_of(mode) > series_ratio * bandwidth_of(other);
+}
+
+bool may_be_moved_from(const RepeatedMode& mode, const RepeatedMode& other, double below_hz) {
+  constexpr double weak = 0.3;
+  constexpr double tolerance = 0.01;
+  const double apart_hz = std::abs(hz(mode) - hz(other));
+  const auto is_at = [&](double times) {
+    return std::abs(apart_hz - times * below_hz) < tolerance * hz(mode);
+  };
+  return below_hz > 0.0 && mode.amplitude < weak * other.amplitude && (is_at(1.0) || is_at(2.0));
+}
+
+// Why a mode of one decay is doubtful beside another, or empty.
+std::string doubt_beside(const RepeatedMode& mode, const RepeatedMode& other, double below_hz) {
+  if (is_weak_beside(mode, other)) {
+    return fmt::format("weak beside the mode at {:.5g} Hz, in a single decay", hz(other));
+  }
+  if (may_be_part_of(mode, other)) {
+    return fmt::format("dies away sooner beside the mode at {:.5g} Hz, in a single decay",
+                       hz(other));
+  }
+  if (may_be_moved_from(mode, other, below_hz)) {
+    return fmt::format("beside the mode at {:.5g} Hz by the motion at {:.3g} Hz, in a single decay",
+                       hz(other), below_hz);
+  }
+  return {};
+}
+
+std::string doubt_in_single_decay(const RepeatedMode& mode, double below_hz,
+                                  const std::vector<RepeatedMode>& modes) {
+  if (2.0 * std::numbers::pi * mode.damping_ratio.value > 1.0) {
+    return "dies away within a period, in a single decay";
+  }
+  for (const RepeatedMode& other : modes) {
+    if (is_listed(other)) {
+      if (std::string doubt = doubt_beside(mode, other, below_hz); !doubt.empty()) {
+        return doubt;
+      }
+    }
+  }
+  return {};
+}
+}  // namespace
+
+void judge_single_decay(std::size_t sensors, double below_hz, std::vector<RepeatedMode>& modes) {
+  constexpr double weak = 0.1;
   const std::vector<RepeatedMode> before = modes;
+  double strongest = 0.0;
+  for (const RepeatedMode& mode : before) {
+    strongest = std::max(strongest, is_listed(mode) ? mode.amplitude : 0.0);
+  }
   for (RepeatedMode& mode : modes) {
-    const auto stronger = std::ranges::find_if(before, [&](const RepeatedMode& other) {
-      return is_listed(other) && mode.amplitude < weak * other.amplitude &&
-             std::max(hz(mode), hz(other)) < beside * std::min(hz(mode), hz(other));
-    });
-    const bool is_pulse = 2.0 * std::numbers::pi * mode.damping_ratio.value > 1.0;
-    if (!is_listed(mode) || (stronger == before.end() && !is_pulse)) {
+    if (!is_listed(mode) || mode.agreed > 1) {
       continue;
     }
-    mode.standing = Standing::doubtful;
-    mode.why = is_pulse ? "dies away within a period, in a single decay"
-                        : fmt::format("weak beside the mode at {:.5g} Hz, in a single decay",
-                                      hz(*stronger));
+    std::string doubt = doubt_in_single_decay(mode, below_hz, before);
+    if (doubt.empty() && sensors > 1 && mode.amplitude < weak * strongest) {
+      doubt = fmt::format("weak, and at one of {} sensors alone", sensors);
+    }
+    if (!doubt.empty()) {
+      mode.standing = Standing::doubtful;
+      mode.why = doubt;
+    }
   }
 }
 

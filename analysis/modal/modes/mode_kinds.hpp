@@ -22,10 +22,15 @@ inline constexpr double least_share_of_taps = 1.0 / 3.0;
 // background (unless it is a line), and so does what grows below the weakest mode's frequency.
 void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes);
 
-// Of a single decay, one sensor's of one impact, nothing tells a mode from what another one's large
-// motion adds around it: agreed ones become doubtful that are 20 dB weaker than another within a
-// factor of 1.5 of their frequency, and those that fall by more than e in one period.
-void judge_single_decay(std::vector<RepeatedMode>& modes);
+// Of a single decay nothing tells a mode from what another one's large motion adds around it. Of
+// one impact, agreed modes that no more than one sensor shows become doubtful if they are
+// - 20 dB weaker than another within a factor of 1.5 of their frequency, or, beside other sensors,
+//   than the strongest;
+// - weaker than another within both bandwidths, die away series_ratio as fast;
+// - 10 dB weaker than another that a motion below the band (below_hz; 0: none) would move there, by
+//   once or twice its frequency;
+// - over by a factor of e in one period.
+void judge_single_decay(std::size_t sensors, double below_hz, std::vector<RepeatedMode>& modes);
 
 // The amplitude of one tone with the power that a sensor shows at rest around a frequency (from two
 // thirds to one and a half of it); 0 where too short to tell.

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "analysis/modal/modes/assignment.hpp"
 #include "analysis/statistics/distributions.hpp"
@@ -174,8 +175,14 @@ bool most_taps_show(const ModeObservations& group, std::size_t taps) {
   return shown >= least_taps && 3 * shown >= 2 * taps;
 }
 
+// Sensors of one impact show what they can: a mode has nodes, and one of them may lie on one.
+std::size_t different_impacts(std::size_t taps, const std::vector<int>& impacts) {
+  return impacts.empty() ? taps : std::set<int>{impacts.begin(), impacts.end()}.size();
+}
+
 RepeatedMode summary_of(const ModeObservations& group, std::size_t taps,
                         const std::vector<int>& impacts) {
+  const std::size_t least_agreed = std::min<std::size_t>(2, different_impacts(taps, impacts));
   const ModeObservations agreed = of_standing(group, Standing::agreed);
   const ModeObservations lines = of_standing(group, Standing::line);
   RepeatedMode mode;
@@ -186,7 +193,7 @@ RepeatedMode summary_of(const ModeObservations& group, std::size_t taps,
     mode.standing = Standing::line;
     mode.why = lines.front().mode->why;
     shown = &lines;
-  } else if (2 * agreed.size() >= group.size() && agreed.size() >= std::min<std::size_t>(2, taps)) {
+  } else if (2 * agreed.size() >= group.size() && agreed.size() >= least_agreed) {
     mode.standing = Standing::agreed;
     shown = &agreed;
   } else if (most_taps_show(group, taps)) {

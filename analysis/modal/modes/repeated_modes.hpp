@@ -30,8 +30,8 @@ struct RepeatedMode {
 // Modes of different taps are one if their frequencies differ by 2 % at most (a sixth of the
 // half-power bandwidth or four standard errors if that is more); each tap shows one at most, and of
 // several close ones each the nearest, all together. A mode is agreed if at least half of the taps
-// that show it say so, and, of several taps, two do, and its estimates are of these taps alone; or
-// if the rational fit finds it in two thirds of all taps (three at least) at ten times
+// that show it say so, and, of several impacts, two do, and its estimates are of these taps alone;
+// or if the rational fit finds it in two thirds of all taps (three at least) at ten times
 // min_significance.
 // Ascending frequency. impacts: of each tap the number of its impact, where several channels show
 // the same one: what they say is averaged, since they vary together. Empty: each tap is an impact

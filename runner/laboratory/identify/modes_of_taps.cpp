@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "analysis/modal/decay/decay_band.hpp"
@@ -54,12 +55,51 @@ void check_band(const TapQuestion& question, double rate_hz) {
   }
 }
 
+namespace {
+// Whether most taps answer at this frequency: twice as strongly as what is there at rest.
+bool do_answer(double frequency_hz, const std::vector<IdentifiedTap>& taps) {
+  const auto answering = std::ranges::count_if(taps, [&](const IdentifiedTap& tap) {
+    return analysis::amplitude_at(frequency_hz, tap.decay) >
+           2.0 * analysis::amplitude_at(frequency_hz, tap.rest);
+  });
+  return 2 * answering > std::ssize(taps);
+}
+
+double median_duration_s(const std::vector<IdentifiedTap>& taps) {
+  std::vector<double> durations_s;
+  for (const IdentifiedTap& tap : taps) {
+    durations_s.push_back(tap.decay.duration_s());
+  }
+  return analysis::quantile(durations_s, 0.5);
+}
+
+// What the taps move below the band, where the first modes of a slender body may lie: unset where
+// it has little energy, or as much at rest.
+std::optional<analysis::EnergyOutside> motion_below(double begins_hz,
+                                                    const std::vector<IdentifiedTap>& taps) {
+  const double lowest_hz = analysis::min_periods / median_duration_s(taps);
+  if (!(lowest_hz < begins_hz)) {
+    return std::nullopt;
+  }
+  const analysis::Band above{begins_hz, std::numeric_limits<double>::infinity()};
+  const analysis::EnergyOutside slow = analysis::energy_outside(decays_of(taps), above, lowest_hz);
+  const bool is_motion = slow.share > told_energy_outside && do_answer(slow.peak_hz, taps);
+  return is_motion ? std::optional{slow} : std::nullopt;
+}
+}  // namespace
+
 analysis::Band modal_band(const TapQuestion& question, const std::vector<IdentifiedTap>& taps,
                           std::optional<double> band_limit_hz, std::vector<std::string>& remarks) {
   const std::vector<analysis::FreeDecay> decays = decays_of(taps);
   const analysis::Band band = band_sought(question, decays, band_limit_hz);
-  const analysis::EnergyOutside outside =
-      analysis::energy_outside(decays, band, std::min(default_low_hz, band.low_hz));
+  const double begins_hz = std::min(default_low_hz, band.low_hz);
+  if (const auto slow = motion_below(begins_hz, taps)) {
+    remarks.push_back(fmt::format(
+        "{:.0f} % of the taps' energy lies below {:g} Hz, where the band begins, most of it near "
+        "{:.3g} Hz: modes there are not sought (--band)",
+        100.0 * slow->share, begins_hz, slow->peak_hz));
+  }
+  const analysis::EnergyOutside outside = analysis::energy_outside(decays, band, begins_hz);
   if (outside.share > told_energy_outside) {
     remarks.push_back(fmt::format(
         "{:.0f} % of the taps' energy lies outside the band of {:g} to {:g} Hz, most of it near "
@@ -121,14 +161,6 @@ void share_lines(const std::vector<IdentifiedTap>& taps, PartOfBand& part, TapRe
                              error.what()});
     }
   }
-}
-
-double median_duration_s(const std::vector<IdentifiedTap>& taps) {
-  std::vector<double> durations_s;
-  for (const IdentifiedTap& tap : taps) {
-    durations_s.push_back(tap.decay.duration_s());
-  }
-  return analysis::quantile(durations_s, 0.5);
 }
 
 // Part by part of the band; taps that are too short for all of them are left out.
@@ -197,13 +229,16 @@ int derivatives_of(analysis::Quantity quantity) {
 }  // namespace
 
 namespace {
+bool is_one_impact(const std::vector<IdentifiedTap>& taps) {
+  const std::vector<int> impacts = impacts_of(taps);
+  return std::ranges::count(impacts, impacts.front()) == std::ssize(impacts);
+}
+
 // Of one impact that several sensors saw; unset for others, whose strength differs.
 analysis::Likeness likeness_over_sensors(const std::vector<IdentifiedTap>& taps,
                                          const std::vector<analysis::RepeatedMode>& modes) {
   constexpr std::size_t fewest_sensors = 3;
-  const std::vector<int> impacts = impacts_of(taps);
-  if (taps.size() < fewest_sensors ||
-      std::ranges::count(impacts, impacts.front()) != std::ssize(impacts)) {
+  if (taps.size() < fewest_sensors || !is_one_impact(taps)) {
     return {};
   }
   return [decays = decays_of(taps), modes](std::size_t one, std::size_t other) {
@@ -275,8 +310,9 @@ std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
   std::ranges::transform(taps, std::back_inserter(rests), &IdentifiedTap::rest);
   analysis::mark_background(rests, modes);
   analysis::judge_certainty(median_duration_s(taps), modes);
-  if (taps.size() == 1) {
-    analysis::judge_single_decay(modes);
+  if (is_one_impact(taps)) {
+    const auto slow = motion_below(std::min(default_low_hz, band.low_hz), taps);
+    analysis::judge_single_decay(taps.size(), slow ? slow->peak_hz : 0.0, modes);
   }
   analysis::mark_combinations(modes, derivatives_of(quantity), likeness_over_sensors(taps, modes));
   return modes;

@@ -89,6 +89,20 @@ TEST_CASE("what channels say of one impact is one observation", "[analysis][moda
   CHECK(modes_over_taps(two_channels).at(0).frequency_hz.interval.low > two.interval.low);
 }
 
+TEST_CASE("of one impact a mode may be shown by one sensor alone, of two impacts by both",
+          "[analysis][modal]") {
+  std::vector<TapModes> shown{tap_of(285.0, 0.03), tap_of(50.0, 0.01)};
+  for (TapModes& tap : shown) {
+    tap.fit.degrees_of_freedom = 100.0;
+  }
+  for (const RepeatedMode& mode : modes_over_taps(shown, {1, 1})) {
+    CHECK(mode.standing == Standing::agreed);
+  }
+  for (const RepeatedMode& mode : modes_over_taps(shown, {1, 2})) {
+    CHECK(mode.standing == Standing::doubtful);
+  }
+}
+
 TEST_CASE("what most taps show far above their noise is a mode, even by one method",
           "[analysis][modal]") {
   std::vector<TapModes> taps;
@@ -520,13 +534,34 @@ TEST_CASE("of a single decay weak neighbours of a mode and pulses are doubtful",
   std::vector<RepeatedMode> modes{certain_mode(39.0, 0.02, 0.5), certain_mode(46.0, 0.02, 8.0),
                                   certain_mode(53.0, 0.01, 1.0), certain_mode(130.0, 0.02, 0.5),
                                   certain_mode(300.0, 0.2, 5.0)};
-  judge_single_decay(modes);
+  judge_single_decay(1, 0.0, modes);
   CHECK(modes[0].standing == Standing::doubtful);
   CHECK_THAT(modes[0].why, Contains("46 Hz"));
   CHECK(modes[1].standing == Standing::agreed);
   CHECK(modes[2].standing == Standing::agreed);  // 18 dB
   CHECK(modes[3].standing == Standing::agreed);  // far from any stronger one
   CHECK(modes[4].standing == Standing::doubtful);
+}
+
+TEST_CASE("of one impact, what a slow motion moves and what follows a mode are doubtful",
+          "[analysis][modal]") {
+  std::vector<RepeatedMode> modes{certain_mode(130.0, 0.012, 1.0), certain_mode(137.0, 0.011, 0.2),
+                                  certain_mode(124.0, 0.036, 0.8), certain_mode(285.0, 0.03, 0.5),
+                                  certain_mode(900.0, 0.01, 0.01)};
+  for (RepeatedMode& mode : modes) {
+    mode.agreed = 1;
+  }
+  std::vector<RepeatedMode> of_two_sensors = modes;
+  judge_single_decay(1, 6.9, modes);
+  CHECK(modes[0].standing == Standing::agreed);
+  CHECK_THAT(modes[1].why, Contains("motion at 6.9 Hz"));
+  CHECK_THAT(modes[2].why, Contains("dies away sooner"));
+  CHECK(modes[3].standing == Standing::agreed);
+  CHECK(modes[4].standing == Standing::agreed);
+  of_two_sensors[1].agreed = 2;
+  judge_single_decay(2, 6.9, of_two_sensors);
+  CHECK(of_two_sensors[1].standing == Standing::agreed);  // both show it
+  CHECK_THAT(of_two_sensors[4].why, Contains("one of 2 sensors"));
 }
 
 TEST_CASE("what rings longer than the motions that would make it is no product of theirs",

@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
+constexpr double highest_rate_hz = 1e7;        // as of --rate
 constexpr double max_rate_difference = 0.001;  // more is a mistake, not rounded times
 
 // The micro sign, and the Greek letter mu.
@@ -113,7 +114,8 @@ double agreed_rate(std::optional<double> of_file_hz, const ReadingOptions& optio
   if (!of_file_hz && !is_given) {
     throw core::InvalidInput{place + ": has no time column (give the rate by --rate HZ)"};
   }
-  if (of_file_hz && !(*of_file_hz > 0.0) && !(is_given && options.trusts_rate)) {
+  const bool is_possible = of_file_hz && *of_file_hz > 0.0 && *of_file_hz <= highest_rate_hz;
+  if (of_file_hz && !is_possible && !(is_given && options.trusts_rate)) {
     throw core::InvalidInput{
         fmt::format("{}: {} {:.6g} samples a second (the right one: --rate HZ --trust-rate)", place,
                     stated, *of_file_hz)};

@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "analysis/modal/recording/sampling.hpp"
 #include "core/error.hpp"
@@ -58,6 +63,38 @@ void check_container(const std::string& file, int format) {
   }
 }
 
+// The bytes that a file of chunks (RIFF, WAV; FORM, AIFF) should have by its header; 0: not stated.
+std::uintmax_t stated_bytes(const std::string& file) {
+  std::ifstream stream{file, std::ios::binary};
+  std::array<char, 8> header{};
+  if (!stream.read(header.data(), header.size())) {
+    return 0;
+  }
+  const std::string kind{header.data(), 4};
+  const bool is_big_endian = kind == "FORM";
+  if (kind != "RIFF" && !is_big_endian) {
+    return 0;
+  }
+  std::uint32_t size = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    size = size << 8 | static_cast<unsigned char>(header.at(is_big_endian ? 4 + i : 7 - i));
+  }
+  constexpr std::uint32_t unknown = 0xFFFF'FF00;  // and above: of what was written as a stream
+  return size < unknown ? std::uintmax_t{size} + header.size() : 0;
+}
+
+// "the file is cut off: ...", or empty.
+std::string told_of_missing(const std::string& file, sf_count_t stated, std::size_t read) {
+  if (static_cast<sf_count_t>(read) < stated) {
+    return fmt::format("the file is cut off: {} of {} samples are there", read, stated);
+  }
+  const std::uintmax_t bytes = std::filesystem::file_size(file);
+  const std::uintmax_t stated_size = stated_bytes(file);
+  return bytes + 1 < stated_size  // a chunk of odd size may lack its last, empty byte
+             ? fmt::format("the file is cut off: {} of {} bytes are there", bytes, stated_size)
+             : std::string{};
+}
+
 bool is_lossy(int format) {
   switch (format & SF_FORMAT_SUBMASK) {
     case SF_FORMAT_PCM_S8:
@@ -99,6 +136,10 @@ Recording read_sound_file(const std::string& file, const ReadingOptions& options
                       {}};
   recording.rate_hz =
       agreed_rate(static_cast<double>(info.samplerate), options, file, "says", recording.remarks);
+  if (std::string missing = told_of_missing(file, info.frames, recording.samples.size());
+      !missing.empty()) {
+    recording.remarks.push_back(std::move(missing));
+  }
   if (is_lossy(info.format)) {
     recording.remarks.emplace_back(
         "is sound of a lossy format: its coder adds and removes what nobody is to hear, so weak "

@@ -224,7 +224,11 @@ TEST_CASE("arrays of a MATLAB file are what SciPy wrote, and no sound",
       {{file, "'unit': 'g', 'n': 3.0, 'acc': x, 'two': np.vstack([x, 2 * x]).astype(np.int16)"},
        {directory / "rate.mat", "'acc': x.astype(np.float32), 'Fs': 2000.0"},
        {directory / "times.mat", "'acc': x, 't': np.arange(80) / 2000"},
-       {directory / "small.mat", "'acc': x[:9]"}});
+       {directory / "small.mat", "'acc': x[:9]"},
+       {directory / "0.mat", "'acc': x, 'fs': 0.0"},
+       {directory / "-2000.mat", "'acc': x, 'fs': -2000.0"},
+       {directory / "nan.mat", "'acc': x, 'fs': np.nan"},
+       {directory / "inf.mat", "'acc': x, 'fs': np.inf"}});
   ReadingOptions options;
   CHECK_THROWS_WITH(read_recording(file, options),
                     Contains("has 3 channels") && Contains("acc, two:1, two:2"));
@@ -242,6 +246,10 @@ TEST_CASE("arrays of a MATLAB file are what SciPy wrote, and no sound",
     CHECK(recording.samples == values);
   }
   CHECK_THROWS_WITH(read_recording(directory / "small.mat", {}), Contains("no real numeric array"));
+  for (const std::string rate : {"0", "-2000", "nan", "inf"}) {
+    const std::string name = directory / (rate + ".mat");
+    CHECK_THROWS_WITH(read_recording(name, {}), Contains("says " + rate + " samples a second"));
+  }
   testing::write(directory / "no.mat", "this is no array");
   CHECK_THROWS_WITH(read_recording(directory / "no.mat", {}), Contains("MATLAB"));
 }

@@ -110,12 +110,28 @@ TEST_CASE("a channel of a sound file is what SciPy wrote into it", "[analysis][r
   CHECK(recording.rate_hz == 12345.0);
   CHECK(recording.channel == "channel 2");
   CHECK(recording.samples == written);
+  CHECK(recording.remarks.empty());
   CHECK_THROWS_WITH(read_recording(file, {}), Contains("has 2 channels"));
   CHECK_THROWS_WITH(read_recording(file, {0.0, "3"}), Contains("--column 1 ... 2"));
   CHECK_THROWS_WITH(read_recording(file, {8000.0, "1"}), Contains("12345 samples a second"));
   testing::write(directory / "no.wav", "this is no sound");
   CHECK_THROWS_WITH(read_recording(directory / "no.wav", {}), Contains("cannot be read as sound"));
   CHECK_THROWS_WITH(read_recording(directory / "none.csv", {}), Contains("cannot be read"));
+}
+
+TEST_CASE("a sound file that is cut off is read as far as it goes, and that is said",
+          "[analysis][recordings]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.wav";
+  const auto half = testing::python_numbers(
+      "from scipy.io import wavfile\nx = np.arange(500).astype(np.int16)\nwavfile.write('" + file +
+      "', 8000, x)\nwith open('" + file +
+      "', 'r+b') as f: f.truncate(44 + 500)\nout(x[:250] / "
+      "32768)\n");
+  const Recording recording = read_recording(file, {});
+  CHECK(recording.samples == half);
+  REQUIRE(recording.remarks.size() == 1);
+  CHECK_THAT(recording.remarks.front(), Contains("cut off: 544 of 1044 bytes"));
 }
 
 TEST_CASE("every impact is found within a millisecond, and nothing else",

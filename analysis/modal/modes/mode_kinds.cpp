@@ -96,9 +96,10 @@ bool is_weak_beside(const RepeatedMode& mode, const RepeatedMode& other) {
 }
 
 bool may_be_part_of(const RepeatedMode& mode, const RepeatedMode& other) {
-  return mode.amplitude < other.amplitude &&
-         std::abs(hz(mode) - hz(other)) < bandwidth_of(mode) + bandwidth_of(other) &&
-         bandwidth_of(mode) > series_ratio * bandwidth_of(other);
+  const bool dies_sooner =
+      mode.amplitude < other.amplitude && bandwidth_of(mode) > series_ratio * bandwidth_of(other);
+  return std::abs(hz(mode) - hz(other)) < bandwidth_of(mode) + bandwidth_of(other) &&
+         (dies_sooner || mode.agreed < other.agreed);
 }
 
 bool may_be_moved_from(const RepeatedMode& mode, const RepeatedMode& other, double below_hz) {
@@ -117,7 +118,7 @@ std::string doubt_beside(const RepeatedMode& mode, const RepeatedMode& other, do
     return fmt::format("weak beside the mode at {:.5g} Hz, in a single decay", hz(other));
   }
   if (may_be_part_of(mode, other)) {
-    return fmt::format("dies away sooner beside the mode at {:.5g} Hz, in a single decay",
+    return fmt::format("within the bandwidth of the mode at {:.5g} Hz, in a single decay",
                        hz(other));
   }
   if (may_be_moved_from(mode, other, below_hz)) {

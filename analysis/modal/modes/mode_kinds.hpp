@@ -26,7 +26,8 @@ void judge_certainty(double decay_s, std::vector<RepeatedMode>& modes);
 // one impact, agreed modes that no more than one sensor shows become doubtful if they are
 // - 20 dB weaker than another within a factor of 1.5 of their frequency, or, beside other sensors,
 //   than the strongest;
-// - weaker than another within both bandwidths, die away series_ratio as fast;
+// - within both bandwidths of another that more sensors show, or that is stronger and dies away
+//   series_ratio times more slowly;
 // - 10 dB weaker than another that a motion below the band (below_hz; 0: none) would move there, by
 //   once or twice its frequency;
 // - over by a factor of e in one period.

@@ -555,12 +555,15 @@ TEST_CASE("of one impact, what a slow motion moves and what follows a mode are d
   judge_single_decay(1, 6.9, modes);
   CHECK(modes[0].standing == Standing::agreed);
   CHECK_THAT(modes[1].why, Contains("motion at 6.9 Hz"));
-  CHECK_THAT(modes[2].why, Contains("dies away sooner"));
+  CHECK_THAT(modes[2].why, Contains("within the bandwidth"));
   CHECK(modes[3].standing == Standing::agreed);
   CHECK(modes[4].standing == Standing::agreed);
+  of_two_sensors[0].agreed = 2;
   of_two_sensors[1].agreed = 2;
+  of_two_sensors[2].amplitude = 2.0;  // stronger, but at one sensor alone
   judge_single_decay(2, 6.9, of_two_sensors);
   CHECK(of_two_sensors[1].standing == Standing::agreed);  // both show it
+  CHECK_THAT(of_two_sensors[2].why, Contains("within the bandwidth"));
   CHECK_THAT(of_two_sensors[4].why, Contains("one of 2 sensors"));
 }
 

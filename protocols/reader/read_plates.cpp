@@ -168,6 +168,13 @@ Eigen::Isometry3d read_pose(MapReader& reader) {
   return pose;
 }
 
+core::InvalidInput with_cure(const SurfaceFault& fault, const core::TriangleSurface& surface,
+                             const std::string& file, double metres_per_unit) {
+  return core::InvalidInput{
+      fmt::format("{}; try: {}; or in the study, beside the file: {}", fault.what(),
+                  command_that_cures(surface, file, metres_per_unit), key_that_cures(surface))};
+}
+
 // Of a surface that passes; else a fault with the command that should cure it.
 core::Solid solid_of(core::TriangleSurface surface, const std::string& file,
                      double metres_per_unit) {
@@ -175,9 +182,7 @@ core::Solid solid_of(core::TriangleSurface surface, const std::string& file,
     check_count(surface);
     check_surface(surface);
   } catch (const SurfaceFault& fault) {
-    throw core::InvalidInput{
-        fmt::format("{}; try: {}; or in the study, beside the file: {}", fault.what(),
-                    command_that_cures(surface, file, metres_per_unit), key_that_cures(surface))};
+    throw with_cure(fault, surface, file, metres_per_unit);
   }
   std::string command = command_that_simplifies(surface, file, metres_per_unit);
   return core::Solid{std::move(surface), std::move(command)};
@@ -247,10 +252,20 @@ AskedSurface read_asked_surface(MapReader& reader) {
   return asked;
 }
 
+ReadSurface read_or_refuse(const SurfaceSource& source, double metres_per_unit) {
+  try {
+    return read_surface(source, metres_per_unit);
+  } catch (const SurfaceFault& fault) {
+    throw with_cure(fault, read_to_repair(source, metres_per_unit).surface, source.file,
+                    metres_per_unit);
+  }
+}
+
 core::TriangleSurface surface_asked_for(const AskedSurface& asked, const SurfaceFiles& files,
                                         Protocol& protocol) {
   SurfaceSource& source = surface_of(asked.file, files.contents, protocol);
-  auto [surface, noise] = read_surface(source, asked.metres_per_unit);
+  auto [surface, noise] = asked.repair ? read_to_repair(source, asked.metres_per_unit)
+                                       : read_or_refuse(source, asked.metres_per_unit);
   source.noise = noise;
   if (asked.repair) {
     surface =

@@ -14,6 +14,10 @@ struct AskedRepair {
   RepairRequest request;
 };
 
+// As read_surface, but a face that cannot be cut into triangles is a fan of them, in place of a
+// fault: what a repair begins with.
+ReadSurface read_to_repair(const SurfaceSource& source, double metres_per_unit);
+
 // The name of the result, which says of what and how it was made.
 std::string repaired_name(const std::string& file, const AskedRepair& asked);
 

@@ -20,8 +20,10 @@
 #include "core/files/sha256.hpp"
 #include "core/process/bounded_child.hpp"
 #include "core/text/plain_text.hpp"
+#include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/cut_polygon.hpp"
 #include "protocols/surface/join_points.hpp"
+#include "protocols/surface/repaired_surface.hpp"
 #include "protocols/surface/surface_soup.hpp"
 #include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
@@ -121,6 +123,9 @@ SurfaceSoup soup_of(const SurfaceSource& source) {
   if (ending == ".stl") {
     return read_stl(source.file, source.bytes);
   }
+  if (source.bytes.starts_with("\xFF\xFE") || source.bytes.starts_with("\xFE\xFF")) {
+    throw core::InvalidInput{source.file + ": its text is UTF-16 (save it as UTF-8)"};
+  }
   if (ending == ".ply") {
     return read_ply(source.file, source.bytes);
   }
@@ -204,23 +209,52 @@ std::vector<std::size_t> from_first_corner(std::vector<std::size_t> polygon,
   return polygon;
 }
 
-std::vector<std::array<std::size_t, 3>> triangles_of(const std::vector<std::size_t>& polygon,
-                                                     const SurfaceSoup& soup,
-                                                     const std::string& file) {
-  if (polygon.size() == 3) {
-    return {{polygon[0], polygon[1], polygon[2]}};
+// Corners in one place, one after the other, are one.
+std::vector<std::size_t> without_repeated_corners(std::vector<std::size_t> polygon,
+                                                  const SurfaceSoup& soup) {
+  const auto are_one = [&](std::size_t a, std::size_t b) {
+    return soup.points[a] == soup.points[b];
+  };
+  const auto repeated = std::ranges::unique(polygon, are_one);
+  polygon.erase(repeated.begin(), repeated.end());
+  while (polygon.size() > 1 && are_one(polygon.front(), polygon.back())) {
+    polygon.pop_back();
   }
+  return polygon;
+}
+
+std::vector<std::array<std::size_t, 3>> fan_of(std::size_t corners) {
+  std::vector<std::array<std::size_t, 3>> fan;
+  for (std::size_t i = 2; i < corners; ++i) {
+    fan.push_back({0, i - 1, i});
+  }
+  return fan;
+}
+
+// A face that cannot be cut is a fan, and `uncut` says so of the first one.
+std::vector<std::array<std::size_t, 3>> triangles_of(const std::vector<std::size_t>& face,
+                                                     const SurfaceSoup& soup, std::string& uncut) {
+  if (face.size() == 3) {
+    return {{face[0], face[1], face[2]}};
+  }
+  const auto polygon = without_repeated_corners(face, soup);
   std::vector<core::Vec3> corners_m;
   for (const std::size_t corner : polygon) {
     corners_m.push_back(soup.points[corner]);
   }
-  auto triangles = cut_polygon(corners_m);
+  if (polygon.size() < 3) {
+    return {{polygon.front(), polygon.front(), polygon.back()}};  // is left out, and told
+  }
+  auto triangles = polygon.size() > 3 ? cut_polygon(corners_m) : fan_of(3);
   if (triangles.empty()) {
-    const core::Vec3& at = corners_m.front();
-    throw core::InvalidInput{fmt::format(
-        "{}: the face of {} corners at ({:.6g}, {:.6g}, {:.6g}) m cannot be cut into triangles "
-        "(its outline crosses or touches itself, or has no area)",
-        file, polygon.size(), at.x(), at.y(), at.z())};
+    triangles = fan_of(polygon.size());
+    if (uncut.empty()) {
+      const core::Vec3& at = corners_m.front();
+      uncut = fmt::format(
+          "the face of {} corners at ({:.6g}, {:.6g}, {:.6g}) m cannot be cut into triangles (its "
+          "outline crosses or touches itself, or has no area)",
+          polygon.size(), at.x(), at.y(), at.z());
+    }
   }
   for (auto& triangle : triangles) {
     std::ranges::transform(triangle, triangle.begin(),
@@ -337,12 +371,14 @@ std::string SurfaceNoise::describe() const {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-ReadSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
+namespace {
+ReadSurface read_with_fans(const SurfaceSource& source, double metres_per_unit,
+                           std::string& uncut) {
   SurfaceSoup soup = soup_of(source);
   scale(soup, source.file, metres_per_unit);
   std::vector<std::array<std::size_t, 3>> triangles;
   for (const auto& polygon : soup.polygons) {
-    const auto cut = triangles_of(from_first_corner(polygon, soup), soup, source.file);
+    const auto cut = triangles_of(from_first_corner(polygon, soup), soup, uncut);
     triangles.insert(triangles.end(), cut.begin(), cut.end());
   }
   if (triangles.size() > most_read) {
@@ -354,5 +390,20 @@ ReadSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
     throw core::InvalidInput{source.file + ": no triangle of it has an area"};
   }
   return read;
+}
+}  // namespace
+
+ReadSurface read_surface(const SurfaceSource& source, double metres_per_unit) {
+  std::string uncut;
+  ReadSurface read = read_with_fans(source, metres_per_unit, uncut);
+  if (!uncut.empty()) {
+    throw SurfaceFault{fmt::format("{}: {}", source.file, uncut)};
+  }
+  return read;
+}
+
+ReadSurface read_to_repair(const SurfaceSource& source, double metres_per_unit) {
+  std::string uncut;
+  return read_with_fans(source, metres_per_unit, uncut);
 }
 }  // namespace tapstudy::protocols

@@ -6,6 +6,7 @@
 #include "core/error.hpp"
 #include "core/files/output_files.hpp"
 #include "protocols/surface/repair_surface.hpp"
+#include "protocols/surface/repaired_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
 #include "protocols/yaml/text_file.hpp"
 #include "runner/commands/command_line.hpp"
@@ -48,7 +49,7 @@ protocols::RepairRequest request_of(const RepairOptions& options) {
 void repair(const RepairOptions& options) {
   const protocols::RepairRequest request = request_of(options);
   core::check_is_new(options.out);
-  const protocols::ReadSurface read = protocols::read_surface(
+  const protocols::ReadSurface read = protocols::read_to_repair(
       protocols::surface_source(options.file,
                                 protocols::contents_of(options.file, protocols::max_surface_bytes)),
       options.metres_per_unit);

@@ -353,6 +353,19 @@ TEST_CASE("a surface is repaired where its protocol asks for that, and nowhere e
              Contains("holes filled: 1") && Contains("triangles: 3 kept, 0 turned, 0 dropped, 1"));
 }
 
+TEST_CASE("a face without area is refused with its cure, and what it joins is one body",
+          "[protocols][surface][repair]") {
+  // a box, between the corners 4 and 5 of its top a sliver: 8 on the front's edge, 9 on the top's
+  const std::string with_sliver =
+      "OFF\n10 7 0\n0 0 -99\n99 0 -99\n99 99 -99\n0 99 -99\n0 0 0\n99 0 0\n99 99 0\n0 99 0\n"
+      "33 0 0\n66 0 0\n"
+      "4 3 2 1 0\n5 0 1 5 8 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n5 4 9 5 6 7\n4 4 8 5 9\n";
+  CHECK_THAT(refusal_with("offset_m: [0, 0, 0]", with_sliver),
+             Contains("the face of 4 corners") && Contains("try: tapstudy repair"));
+  const core::TriangleSurface repaired = tetrahedron_of(protocol_with("repair: {}", with_sliver));
+  CHECK(core::volume_m3(repaired) == Approx(std::pow(0.099, 3)));
+}
+
 TEST_CASE("a study that has begun has the repaired surface that it stored",
           "[protocols][surface][repair]") {
   const protocols::Protocol began =

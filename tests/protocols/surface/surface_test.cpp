@@ -202,6 +202,7 @@ TEST_CASE("an OBJ that is none is refused with its line and what is there",
   refused("v 0 0 0\nv 1 0 0\nl 1 2\n", "holds 2 points (v), 1 lines (l) and no face (f)");
   refused("v 0 0\n", "body.obj:1: a point (v) of 2 numbers");
   refused("v 0 0 0\nv 1,5 0 0\n", "body.obj:2: '1,5' has a decimal comma");
+  refused(std::string{"\xFF\xFEv\0 \0", 6}, "its text is UTF-16 (save it as UTF-8)");
   refused("v 0 0 0 0\n", "weight 0");
   refused("v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 \\\n 4\n",
           "body.obj:5: a face (f) with the corner '4' (3 points so far)");
@@ -550,17 +551,33 @@ TEST_CASE("a finger coming down meets a body at its top", "[core][surface]") {
         Approx(-0.05));
 }
 
-TEST_CASE("a face that no triangles can fill is refused, whatever its corners are",
-          "[protocols][surface]") {
+namespace {
+protocols::ReadSurface read_off(const std::string& corners) {
+  return protocols::read_surface(protocols::surface_source("face.off", "OFF\n" + corners), 1.0);
+}
+}  // namespace
+
+TEST_CASE("a face that no triangles can fill is refused, with its place", "[protocols][surface]") {
   const auto* corners = GENERATE(
-      // a face that crosses itself, one without area, one beyond all sizes, one corner twice
+      // a face that crosses itself, one without area
       "5 1 0\n-20 -10 0\n-20 0 -10\n-20 -20 -10\n0 0 0\n10 -10 -10\n5 0 1 2 3 4\n",
       "8 1 0\n-21.02577 2.5e-301 0\n-26.38852 7.1e-302 0\n26.204615 7.5e-301 0\n-20.5744 7.3e-301 "
-      "0\n-14.5726 9e-16 0\n-0.96541 5.2e-16 0\n-19.42 0 0\n-25.37 7.9e-16 0\n8 0 1 2 3 4 5 6 7\n",
-      "4 1 0\n0 0 0\n1e308 0 0\n1e308 1e308 0\n0 1e308 0\n4 0 1 2 3\n",
-      "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 0 0\n4 0 1 2 3\n");
-  CHECK_THROWS_AS(protocols::read_surface(
-                      protocols::surface_source("face.off", std::string{"OFF\n"} + corners), 1.0),
+      "0\n-14.5726 9e-16 0\n-0.96541 5.2e-16 0\n-19.42 0 0\n-25.37 7.9e-16 0\n8 0 1 2 3 4 5 6 7\n");
+  CHECK_THROWS_WITH(read_off(corners), Contains("corners at (") && Contains("cannot be cut"));
+}
+
+TEST_CASE("corners of a face that follow each other in one place are one", "[protocols][surface]") {
+  const protocols::ReadSurface face =
+      read_off("5 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 0\n6 0 1 1 2 3 4\n");
+  CHECK(face.surface.triangles.rows() == 2);
+  const protocols::ReadSurface with_line =
+      read_off("4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 0 0\n4 0 1 2 3\n4 0 1 1 3\n");
+  CHECK(with_line.surface.triangles.rows() == 1);
+  CHECK(with_line.noise.without_area == 1);
+}
+
+TEST_CASE("a face beyond all sizes is refused", "[protocols][surface]") {
+  CHECK_THROWS_AS(read_off("4 1 0\n0 0 0\n1e308 0 0\n1e308 1e308 0\n0 1e308 0\n4 0 1 2 3\n"),
                   core::InvalidInput);
 }
 

@@ -10,8 +10,10 @@
 
 #include "core/error.hpp"
 #include "core/model/beam.hpp"
+#include "core/model/cubic_elements.hpp"
 #include "core/model/discrete_body.hpp"
 #include "core/model/element_order.hpp"
+#include "core/model/elements/enrichment.hpp"
 #include "core/model/error_estimate.hpp"
 #include "core/model/joints/coupled_bodies.hpp"
 #include "core/model/joints/joints.hpp"
@@ -69,18 +71,42 @@ void keep_touchable_part(const Shape& shape, SolvedBody& solved) {
 }
 
 namespace {
+// Modes in the space of cubic elements on the same tetrahedra; of their shapes what moves T10's
+// nodes, which the other unknowns do not.
+Modes cubic_modes(const BodySpec& body, DiscreteBody& discrete, double band_limit_hz,
+                  const ProgressHook& progress) {
+  Stopwatch watch;
+  tell(progress, fmt::format("assembling {} cubic tetrahedra", discrete.mesh.tets.rows()));
+  const EnrichedBody cubic = enriched(discrete.mesh, body.unit_material(), discrete.dofs,
+                                      spring_supports(discrete.mesh, body.shape, body.fixations));
+  discrete.cost.assemble_s += watch.lap_s();
+  Modes modes = solve_modes(cubic.matrices, band_limit_hz, progress);
+  modes.shapes = modes.shapes(cubic.place, Eigen::all).eval();
+  return modes;
+}
+
 SolvedBody solve_once(const BodySpec& body, ErrorEstimation estimation,
                       const ProgressHook& progress) {
   const Material unit = body.unit_material();
   std::vector<DiscreteBody> discrete{discretised(body, unit, body.mesh.size, {}, progress)};
   DiscreteBody& only = discrete.front();
-  const double turn = 2.0 * std::numbers::pi;
-  const Modes modes = solve_modes(only.matrices, body.band_limit_rad_per_m / turn, progress);
+  const double limit_hz = body.band_limit_rad_per_m / (2.0 * std::numbers::pi);
+  const bool is_cubic = body.mesh.order == cubic_order;
+  const Modes modes = is_cubic ? cubic_modes(body, only, limit_hz, progress)
+                               : solve_modes(only.matrices, limit_hz, progress);
   SolvedBody solved;
   solved.modes.kappa_rad_per_m = modes.omega_rad_s;
   solved.modes.band_limit_rad_per_m = body.band_limit_rad_per_m;
   solved.modes.report = report_on(discrete, modes);
-  solved.modes.estimate = estimate_if_wanted(estimation, body, unit, only, modes, progress);
+  if (is_cubic) {
+    solved.modes.report.bodies.front().order = cubic_order;
+    solved.modes.report.dofs = enriched_dofs(only.mesh, only.dofs);
+    solved.modes.estimate.not_estimated =
+        "there are no elements above order 3 (mesh: auto, or an accuracy, compares with a coarser "
+        "mesh)";
+  } else {
+    solved.modes.estimate = estimate_if_wanted(estimation, body, unit, only, modes, progress);
+  }
   solved.displacement = with_constrained_rows(modes.shapes, only.dofs);
   solved.mesh = std::move(only.mesh);
   return solved;

@@ -18,7 +18,7 @@ DiscreteBody discretised(const Plate& plate, const Material& material, const Mes
   body.mesh = mesh_shape(plate.shape, size, points_to_mesh(all_regions, plate.shape));
   if (plate.mesh.order != 1) {
     TetMesh quadratic = to_quadratic(body.mesh);
-    if (plate.mesh.order == 2 || 3 * quadratic.nodes_m.rows() <= max_chosen_dofs) {
+    if (plate.mesh.order >= 2 || 3 * quadratic.nodes_m.rows() <= max_chosen_dofs) {
       body.mesh = std::move(quadratic);
     }
   }

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "core/error.hpp"
+#include "core/model/cubic_elements.hpp"
 #include "protocols/axes/axis.hpp"
 #include "protocols/reader/read_sections.hpp"
 #include "protocols/surface/check_surface.hpp"
@@ -114,10 +115,11 @@ core::Fixation read_fixation(MapReader& reader, bool is_box) {
 void read_mesh(MapReader& mesh, core::Meshing& meshing) {
   if (mesh.has("order")) {
     meshing.order = mesh.integer(
-        {"order", fmt::format("element order: 1 as in the paper, 2 is far more accurate; unset: 2, "
-                              "but 1 where that would take more than {} unknowns",
+        {"order", fmt::format("element order: 1 as in the paper, 2 is far more accurate, 3 for "
+                              "sheets and thin walls; unset: 2, but 1 where that would take more "
+                              "than {} unknowns",
                               core::max_chosen_dofs)},
-        1, 2);
+        1, core::cubic_order);
   }
   if (mesh.has("max_tet_volume_m3")) {
     meshing.size.max_tet_volume_m3 =
@@ -130,8 +132,10 @@ void read_mesh(MapReader& mesh, core::Meshing& meshing) {
       mesh.number({"radius_edge_ratio", "TetGen's bound on circumradius over shortest edge"},
                   {1.1, 10.0}, 1.414);
   meshing.size.flattening =
-      mesh.number({"flattening", "elements are this many times wider than thick, for thin sheets"},
-                  {1.0, core::max_flattening}, 1.0);
+      mesh.number({"flattening",
+                   "elements are this many times wider than thick, for thin sheets; beyond 8 with "
+                   "order 3"},
+                  {1.0, core::max_cubic_flattening}, 1.0);
   if (mesh.has("accuracy")) {
     meshing.accuracy = mesh.number({"accuracy",
                                     "refine until no frequency in the band changes by more than "
@@ -384,6 +388,8 @@ void check_mesh(MapReader& reader, const std::string& key, const Plate& plate) {
     reader.reject(key, fmt::format("its mesh {}, to which bodies in contact are not refined (give "
                                    "max_tet_volume_m3)",
                                    plate.mesh.is_automatic ? "is auto" : "has an accuracy"));
+  } else if (plate.mesh.order == core::cubic_order) {
+    reader.reject(key, "its mesh has order 3, which bodies in contact cannot have (1 or 2)");
   }
 }
 

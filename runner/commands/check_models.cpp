@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/model/cubic_elements.hpp"
 #include "core/model/element_order.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/progress.hpp"
@@ -266,9 +267,9 @@ std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
     if (mesh_of(stimulus, i).order == core::chosen_order && report.bodies[i].order == 1) {
       lines += fmt::format(
           "  warning: {} has linear elements, as quadratic ones would have more than {} unknowns: "
-          "its frequencies may be far too high (fewer elements: a surface of fewer triangles, "
-          "mesh: radius_edge_ratio: 2 or a larger max_tet_volume_m3; or order: 2, if time and "
-          "memory allow)\n",
+          "its frequencies may be far too high (of a box mesh: auto; fewer elements: a surface of "
+          "fewer triangles, mesh: radius_edge_ratio: 2 or a larger max_tet_volume_m3; or order: 2, "
+          "if time and memory allow)\n",
           name_of(stimulus, i), core::max_chosen_dofs);
     }
   }
@@ -290,7 +291,11 @@ std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
   return lines;
 }
 
-std::string describe_errors(const core::FrequencyErrors& errors) {
+std::string name_of_order(int order) {
+  return order == core::cubic_order ? "cubic" : order == 2 ? "quadratic" : "linear";
+}
+
+std::string describe_errors(const core::FrequencyErrors& errors, int order) {
   if (!errors.not_estimated.empty()) {
     return fmt::format("error of the frequencies not estimated: {}", errors.not_estimated);
   }
@@ -299,19 +304,22 @@ std::string describe_errors(const core::FrequencyErrors& errors) {
           ? fmt::format(", and at least {} in the band",
                         counted(static_cast<std::size_t>(errors.modes_at_least), "mode"))
           : "";
-  return fmt::format(
-      "estimated error: frequencies are too high by up to {}, by elements of the next order{}",
-      core::describe_error(errors.largest()), missing);
+  return fmt::format("estimated error: frequencies are too high by up to {}, by {}{}",
+                     core::describe_error(errors.largest()),
+                     order == core::cubic_order ? "how they moved from a coarser mesh"
+                                                : "elements of the next order",
+                     missing);
 }
 
-std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors) {
+std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors,
+                              int order) {
   const bool is_missing = errors.modes_at_least > errors.relative.size();
   if (errors.not_estimated.empty() && errors.largest() <= tolerated_error && !is_missing) {
     return {};
   }
   return fmt::format(
-      "  warning: {}: {} (mesh: order 2, a smaller max_tet_volume_m3 or less flattening; "
-      "accuracy: 0.02 refines until they hold still)\n",
-      stimulus, describe_errors(errors));
+      "  warning: {}: {} (mesh: order 2, of thin walls 3, a smaller max_tet_volume_m3 or less "
+      "flattening; accuracy: 0.02 refines until they hold still)\n",
+      stimulus, describe_errors(errors, order));
 }
 }  // namespace tapstudy::runner

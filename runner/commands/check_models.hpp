@@ -38,8 +38,11 @@ std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
 // and why.
 std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
                                const core::ModelReport& report);
-// One line about the discretisation error of a model's frequencies.
-std::string describe_errors(const core::FrequencyErrors& errors);
+// "linear", "quadratic" or "cubic".
+std::string name_of_order(int order);
+// One line about the discretisation error of a model's frequencies, of elements of this order.
+std::string describe_errors(const core::FrequencyErrors& errors, int order);
 // Beyond 5 %, or where modes are missing, or nothing is known: a warning with its cure; else empty.
-std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors);
+std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors,
+                              int order);
 }  // namespace tapstudy::runner

@@ -132,7 +132,7 @@ void print_solution(const std::string& name, const core::ModelReport& report) {
       "{}: {} nodes, {} {} tetrahedra, {} free degrees of freedom\n"
       "  {:.3f} s (mesh {:.3f}, assemble {:.3f}, factor {:.3f}, iterate {:.3f}), {:.0f} MB at "
       "most\n\n",
-      name, report.nodes, report.tets, report.order() == 2 ? "quadratic" : "linear", report.dofs,
+      name, report.nodes, report.tets, name_of_order(report.order()), report.dofs,
       report.cost.total_s(), report.cost.mesh_s, report.cost.assemble_s, report.cost.factor_s,
       report.cost.iterate_s, 1e-6 * peak_memory_bytes());
 }
@@ -182,9 +182,9 @@ void print_table(const protocols::PresentedStimulus& stimulus, const core::Plate
   print_modes(plate, errors, stimulus.contacts != nullptr);
   if (!is_beam) {
     print_completeness(report, spec.band_limit_hz);
-    fmt::print("  {}\n", describe_errors(errors));
+    fmt::print("  {}\n", describe_errors(errors, report.order()));
     fmt::print("{}{}{}", note_of_relaxation(stimulus, report), warning_of_order(stimulus, report),
-               warning_of_errors(stimulus.name, errors));
+               warning_of_errors(stimulus.name, errors, report.order()));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/model/cubic_elements.hpp"
 #include "core/model/mesh/tetgen_job.hpp"
 #include "core/model/shape/shape.hpp"
 namespace tapstudy::core {
@@ -131,13 +132,10 @@ void check_count(const Shape& shape, const MeshSize& size) {
   if (from_shape > max_tets) {
     const double enough =
         size.flattening * std::cbrt(from_shape / 1e4) * std::cbrt(from_shape / 1e4);
-    advice = enough <= max_flattening
-                 ? fmt::format(
-                       "it is too thin for well-shaped tetrahedra; mesh.flattening: {:.0f} "
-                       "flattens them, order: 2 and an accuracy show whether they are fine "
-                       "enough",
-                       std::ceil(enough))
-                 : std::string{"it is too thin for solid elements"};
+    advice = fmt::format(
+        "it is too thin for well-shaped tetrahedra; mesh: auto takes flat ones of order 3, as do "
+        "order: 3 and flattening: {:.0f}",
+        std::min(std::ceil(enough), max_cubic_flattening));
   }
   throw ModelError{fmt::format(
       "mesh: a body of {:.4g} × {:.4g} × {:.4g} m would take about {:.2g} tetrahedra (at most "

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/model/cubic_elements.hpp"
 #include "core/model/element_order.hpp"
 #include "core/model/refinement/refinement.hpp"
 #include "core/model/refinement/rounds.hpp"
@@ -20,8 +21,9 @@ double edge_m(double volume_m3) {
 Meshing meshing_with(double edge_m, int order, const Shape& shape) {
   Meshing mesh;
   mesh.order = order;
+  const double flattest = order == cubic_order ? max_cubic_flattening : max_chosen_flattening;
   if (const auto* const box = std::get_if<Box>(&shape)) {
-    mesh.size.flattening = std::clamp(edge_m / box->size_m.z(), 1.0, max_chosen_flattening);
+    mesh.size.flattening = std::clamp(edge_m / box->size_m.z(), 1.0, flattest);
   }
   const double regular_m3 = edge_m * edge_m * edge_m / (6.0 * std::numbers::sqrt2);
   mesh.size.max_tet_volume_m3 = regular_m3 / mesh.size.flattening;
@@ -37,6 +39,13 @@ double first_edge_m(const Shape& shape) {
   }
   // Six elements a square of one layer.
   return std::sqrt(6.0 * volume_m3 / (box->size_m.z() * tets_of_first_round));
+}
+
+// Of a plate so thin that quadratic elements would bend only where four times those of the first
+// round are taken.
+bool is_sheet(const Shape& shape) {
+  const auto* const box = std::get_if<Box>(&shape);
+  return box != nullptr && first_edge_m(shape) > 2.0 * max_chosen_flattening * box->size_m.z();
 }
 
 // The next order's modes that this one has above the band count by how far they have to fall.
@@ -60,9 +69,27 @@ bool is_all_sides(const std::vector<Fixation>& fixations) {
 
 // By which share to shorten the edges: errors of quadratic elements fall with their fourth power
 // where the modes are smooth, and more slowly at the rims of what is held.
-double shortening(double error, double accuracy) {
+double shortening(double bound, double accuracy) {
   constexpr double usual_power = 2.5;
-  return std::clamp(std::pow(0.5 * accuracy / error, 1.0 / usual_power), 0.5, 0.7);
+  return std::clamp(std::pow(accuracy / bound, 1.0 / usual_power), 0.5, 0.7);
+}
+
+// Small steps, of which the last one tells what is left.
+constexpr double shortened_cubic = 0.7;
+
+// Of cubic elements, which have none above them: the frequencies to which those of two meshes tend
+// (Richardson 1911). Errors of flat ones fall with the square of the edges, at clamped rims with a
+// power of 1.5. Modes that were above the band have moved from its limit at least.
+ErrorEstimate extrapolated(const BodyModes& before, const BodyModes& after, double shortened) {
+  const double left = std::pow(shortened, 1.5);
+  ErrorEstimate estimate{after.kappa_rad_per_m, {}, 0.0};
+  for (Eigen::Index i = 0; i < after.kappa_rad_per_m.size(); ++i) {
+    const double from =
+        i < before.kappa_rad_per_m.size() ? before.kappa_rad_per_m[i] : after.band_limit_rad_per_m;
+    estimate.kappa_rad_per_m[i] -=
+        left / (1.0 - left) * std::max(0.0, from - after.kappa_rad_per_m[i]);
+  }
+  return estimate;
 }
 
 class ChosenMesh {
@@ -77,11 +104,15 @@ class ChosenMesh {
   }
 
   SolvedBody solved() {
-    if (!is_enough(solve_with(1))) {
+    const int order = is_sheet(body_.shape) ? cubic_order : chosen_order;
+    if (order == cubic_order || !is_enough(solve_with(1))) {
       try {
-        while (!is_enough(solve_with(chosen_order)) && shorten()) {
+        while (!is_enough(solve_with(order)) && shorten()) {
         }
       } catch (const ModelError&) {  // too fine for the mesher: the one before it is the finest
+        if (rounds_.empty()) {
+          throw;
+        }
       }
     }
     check_is_fair();
@@ -102,6 +133,10 @@ class ChosenMesh {
                       : HUGE_VAL;
     rounds_.push_back(
         {next.modes.report.tets, static_cast<int>(next.modes.kappa_rad_per_m.size()), moved});
+    if (is_same_order && order == cubic_order) {
+      next.modes.estimate = extrapolated(last_.modes, next.modes, edge_m_ / last_edge_m_);
+    }
+    last_edge_m_ = edge_m_;
     const auto held_m2 = held_areas_m2(next.mesh, body_.shape, body_.fixations);
     has_settled_ = is_all_sides(body_.fixations) ||
                    (moved <= accuracy_ && nonconverged_region(held_m2_, held_m2).empty());
@@ -116,8 +151,12 @@ class ChosenMesh {
     error_ = error;
     const bool is_known =
         rounds_.back().modes > 0 || (rounds_.size() >= 3 && rounds_[rounds_.size() - 2].modes == 0);
-    return is_known && has_settled_ && 2.0 * error <= accuracy_;
+    return is_known && has_settled_ && bound() <= accuracy_;
   }
+
+  // What elements of the next order find is half of the error at least (error_estimate.hpp).
+  double bound() const { return is_cubic() ? error_ : 2.0 * error_; }
+  bool is_cubic() const { return body_.mesh.order == cubic_order; }
 
   // False if that would take too many unknowns, or too long.
   bool shorten() {
@@ -125,7 +164,9 @@ class ChosenMesh {
     const bool is_layer = body_.mesh.size.flattening > 1.0;
     const double power = is_layer ? 2.0 : 3.0;  // by which the elements grow in number
     const double room = static_cast<double>(max_automatic_dofs) / last_.modes.report.dofs;
-    const double wanted = 2.0 * error_ <= accuracy_ ? 0.6 : shortening(error_, accuracy_);
+    const double wanted = is_cubic()             ? shortened_cubic
+                          : bound() <= accuracy_ ? 0.6
+                                                 : shortening(bound(), accuracy_);
     const double share = std::max(wanted, std::pow(room, -1.0 / power));
     edge_m_ *= share;
     return share < least && rounds_.size() < max_rounds;
@@ -133,20 +174,20 @@ class ChosenMesh {
 
   // Of a sheet: with the flattest elements that are chosen.
   void check_is_feasible() const {
-    constexpr double dofs_a_tet = 3.3;  // quadratic, in one layer
-    const auto* const box = std::get_if<Box>(&body_.shape);
-    if (box == nullptr) {
+    constexpr double dofs_a_tet = 10.0;  // cubic, in one layer
+    if (!is_sheet(body_.shape)) {
       return;
     }
-    const double edge = max_chosen_flattening * box->size_m.z();
-    const double dofs = dofs_a_tet * 6.0 * box->size_m.x() * box->size_m.y() / (edge * edge);
+    const Vec3& size_m = std::get<Box>(body_.shape).size_m;
+    const double edge = max_cubic_flattening * size_m.z();
+    const double dofs = dofs_a_tet * 6.0 * size_m.x() * size_m.y() / (edge * edge);
     if (dofs > max_automatic_dofs) {
       throw ModelError{fmt::format(
           "mesh: auto: a sheet of {:.3g} x {:.3g} x {:.3g} m would take about {:.2g} unknowns (at "
-          "most {}) with elements {} times wider than thick, and flatter ones bend too stiffly: it "
-          "is too thin for solid elements (from {:.2g} m on it is not)",
-          box->size_m.x(), box->size_m.y(), box->size_m.z(), dofs, max_automatic_dofs,
-          max_chosen_flattening, box->size_m.z() * std::sqrt(dofs / max_automatic_dofs))};
+          "most {}) with elements {} times wider than thick: it is too thin for solid elements "
+          "(from {:.2g} m on it is not)",
+          size_m.x(), size_m.y(), size_m.z(), dofs, max_automatic_dofs, max_cubic_flattening,
+          size_m.z() * std::sqrt(dofs / max_automatic_dofs))};
     }
   }
 
@@ -161,7 +202,7 @@ class ChosenMesh {
         "take fewer; or state order, max_tet_volume_m3 and flattening, at your own time and "
         "memory)",
         max_automatic_dofs,
-        std::isfinite(error_) ? fmt::format("too high by {:.0f} % at least", 100.0 * error_)
+        std::isfinite(error_) ? fmt::format("too high by about {:.0f} %", 100.0 * error_)
                               : std::string{"off by more than can be estimated"})};
   }
 
@@ -169,6 +210,7 @@ class ChosenMesh {
   const SolveMeshed& solve_;
   double accuracy_;
   double edge_m_;
+  double last_edge_m_{};
   double error_{HUGE_VAL};
   bool has_settled_{false};
   std::vector<double> held_m2_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/model/cubic_elements.hpp"
 #include "core/model/plate_model.hpp"
 #include "support/catch.hpp"
 using namespace tapstudy;
@@ -53,8 +54,8 @@ TEST_CASE("an automatic mesh has the accuracy that is asked of it, of a sheet on
   CHECK(2.0 * frequency_errors(built.body.modes, sheet.material, sheet.band_limit_hz).largest() <=
         0.02);
   CHECK(report.refinement.back().tets == report.tets);
-  sheet.shape = Box{{0.3, 0.2, 0.0002}};
-  CHECK_THROWS_WITH(build_plate_model(sheet), Contains("too thin for solid elements (from 0.00"));
+  sheet.shape = Box{{0.3, 0.2, 0.00005}};
+  CHECK_THROWS_WITH(build_plate_model(sheet), Contains("too thin for solid elements (from "));
 }
 
 // Leissa 1969, nu 0.3: omega a² sqrt(rho h / D) = 35.985, 73.394, 73.394. Shear and rotary inertia
@@ -79,6 +80,50 @@ TEST_CASE("an automatic mesh is as coarse as the accuracy allows, of a clamped p
   REQUIRE(rounds.size() >= 2);
   CHECK(rounds[rounds.size() - 2].tets <= rounds.back().tets);
   CHECK(built.body.modes.report.dofs < max_automatic_dofs / 2);
+}
+
+TEST_CASE("a clamped sheet of half a millimetre has Leissa's frequencies on an automatic mesh",
+          "[core][model][refinement]") {
+  constexpr double width_m = 0.1;
+  constexpr double height_m = 0.0005;
+  const double unit_hz = std::sqrt(e_pa * height_m * height_m / (12.0 * (1.0 - 0.3 * 0.3) * rho)) /
+                         (2.0 * std::numbers::pi * width_m * width_m);
+  PlateSpec sheet = on_automatic_mesh({width_m, width_m, height_m}, 0.3, 90.0 * unit_hz);
+  for (const Side side : {Side::left, Side::right, Side::front, Side::back}) {
+    sheet.fixations.push_back(side_held(side));
+  }
+  const PlateModel built = build_plate_model(sheet);
+  REQUIRE(built.modal.frequency_hz.size() == 3);
+  CHECK(built.modal.frequency_hz[0] == Approx(35.985 * unit_hz).epsilon(usual_accuracy));
+  CHECK(built.modal.frequency_hz[1] == Approx(73.394 * unit_hz).epsilon(usual_accuracy));
+  CHECK(built.body.modes.report.order() == cubic_order);
+  CHECK(built.body.modes.report.dofs <= max_automatic_dofs);
+  const double error =
+      frequency_errors(built.body.modes, sheet.material, sheet.band_limit_hz).largest();
+  CHECK(built.modal.frequency_hz[1] / (73.394 * unit_hz) - 1.0 <= error);
+}
+
+// Navier's solution again. A mode's shape is sin sin times 2 over the square root of the mass.
+TEST_CASE("flat elements bend as a sheet does where they are cubic, and not where quadratic",
+          "[core][model]") {
+  const Vec3 size_m{0.1, 0.1, 0.0005};
+  const double first_hz = std::numbers::pi / std::pow(size_m.x(), 2) * size_m.z() *
+                          std::sqrt(e_pa / (12.0 * rho * (1.0 - 0.3 * 0.3)));
+  PlateSpec sheet{{Box{size_m}, {}, {}}, {e_pa, rho, 0.3, RayleighDamping{}}, 2.0 * first_hz};
+  sheet.mesh.size = {1.414, 5e-9, 40.0};
+  for (const Side side : {Side::left, Side::right, Side::front, Side::back}) {
+    sheet.fixations.push_back(side_held(side, {false, false, true}));
+  }
+  sheet.mesh.order = cubic_order;
+  const PlateModel cubic = build_plate_model(sheet);
+  REQUIRE(cubic.modal.frequency_hz.size() == 1);
+  CHECK(cubic.modal.frequency_hz[0] == Approx(first_hz).epsilon(0.01));
+  const double most = cubic.modal.shape.col(0).cwiseAbs().maxCoeff();
+  CHECK(most == Approx(2.0 / std::sqrt(rho * size_m.prod())).epsilon(0.02));
+  CHECK_THAT(cubic.body.modes.estimate.not_estimated, Contains("no elements above order 3"));
+  sheet.mesh.order = 2;
+  sheet.band_limit_hz = 10.0 * first_hz;
+  CHECK(build_plate_model(sheet).modal.frequency_hz[0] > 1.2 * first_hz);
 }
 
 TEST_CASE("a point, which holds no solid, is refused on an automatic mesh",

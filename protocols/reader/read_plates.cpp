@@ -131,11 +131,16 @@ void read_mesh(MapReader& mesh, core::Meshing& meshing) {
   meshing.size.radius_edge_ratio =
       mesh.number({"radius_edge_ratio", "TetGen's bound on circumradius over shortest edge"},
                   {1.1, 10.0}, 1.414);
-  meshing.size.flattening =
-      mesh.number({"flattening",
-                   "elements are this many times wider than thick, for thin sheets; beyond 8 with "
-                   "order 3"},
-                  {1.0, core::max_cubic_flattening}, 1.0);
+  meshing.size.flattening = mesh.number(
+      {"flattening", fmt::format("elements are this many times wider than thick, for thin sheets; "
+                                 "beyond {} of order 3 alone",
+                                 core::max_flattening)},
+      {1.0, core::max_cubic_flattening}, 1.0);
+  if (meshing.order != core::cubic_order && meshing.size.flattening > core::max_flattening) {
+    mesh.reject("flattening", fmt::format("beyond {} is of order 3 alone: elements of lower order "
+                                          "bend too stiffly",
+                                          core::max_flattening));
+  }
   if (mesh.has("accuracy")) {
     meshing.accuracy = mesh.number({"accuracy",
                                     "refine until no frequency in the band changes by more than "

@@ -489,7 +489,7 @@ std::string sequence_of(const protocols::Schedule& schedule) {
   return letters;
 }
 
-Names stimuli_of(const std::string& block, const protocols::Schedule& schedule) {
+Names stimuli_in(const std::string& block, const protocols::Schedule& schedule) {
   Names stimuli;
   for (const protocols::PlannedTrial& trial : schedule) {
     if (trial.block == block) {
@@ -513,7 +513,7 @@ TEST_CASE("every order of mixed trials is equally likely that keeps each block's
     ++orders[sequence_of(schedule)];
     for (const std::string block : {"practice", "a", "m"}) {
       const auto alone = protocols::make_schedule(apart, seed, i);
-      agrees = agrees && stimuli_of(block, schedule) == stimuli_of(block, alone);
+      agrees = agrees && stimuli_in(block, schedule) == stimuli_in(block, alone);
     }
   }
   CHECK(agrees);

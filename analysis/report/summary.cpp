@@ -77,7 +77,9 @@ Summary summarise(const StudyDesign& design, const std::vector<AnswerRow>& answe
   summary.loop = loop_quality(answers);
   std::vector<std::shared_ptr<BlockSummary>> blocks;
   std::map<std::string, std::vector<AnswerRow>> compared;  // answers, by block
-  for (const BlockDesign& block : design.blocks) {
+  for (std::size_t i = 0; i < design.blocks.size(); ++i) {
+    const BlockDesign& block = design.blocks[i];
+    core::tell_count(design.count, i, design.blocks.size());
     BlockRows rows;
     std::ranges::copy_if(answers, std::back_inserter(rows.answers),
                          [&](const AnswerRow& answer) { return answer.block == block.name; });

@@ -215,8 +215,7 @@ std::vector<std::size_t> without_repeated_corners(std::vector<std::size_t> polyg
   const auto are_one = [&](std::size_t a, std::size_t b) {
     return soup.points[a] == soup.points[b];
   };
-  const auto repeated = std::ranges::unique(polygon, are_one);
-  polygon.erase(repeated.begin(), repeated.end());
+  polygon.erase(std::unique(polygon.begin(), polygon.end(), are_one), polygon.end());
   while (polygon.size() > 1 && are_one(polygon.front(), polygon.back())) {
     polygon.pop_back();
   }

@@ -40,10 +40,10 @@ class Store {
   static Store from_journal(const std::string& directory);
   static bool has_database(const std::string& directory);
   static bool has_journal(const std::string& directory);
-  // Until resume_sync(), trials are committed and journalled some dozens at a time, nothing waits
-  // for the disk and nothing is read back. A killed program loses trials that were added, and a
-  // power cut may damage the file: only for new studies of simulated participants, which their
-  // seed reproduces.
+  // Until resume_sync(), trials without traces are committed and journalled some dozens at a time,
+  // nothing waits for the disk and nothing is read back. A killed program loses trials that were
+  // added, and a power cut may damage the file: only for new studies of simulated participants,
+  // which their seed reproduces.
   void suspend_sync();
   void resume_sync();
   // Leaves a writer's database as a single file, without the WAL files.
@@ -141,7 +141,7 @@ class Store {
   void rewrite_database();
   void check_is_in_place(const TrialRow& trial);
   void add_to_batch(const TrialRecord& record);
-  void check_batch_is_open();
+  void in_batch(const std::function<void()>& act);
   void commit_batch();
   void add_to_journal(const TrialRecord& record);
   void journal_failed_calls();
@@ -181,10 +181,12 @@ class Store {
   bool confirms_{true};
   // Of the open transaction while nothing is confirmed.
   struct Batch {
+    bool is_open{false};
     int trials{0};
     std::vector<JournalledAnswer> answers;
   };
   Batch batch_;
+  std::string batch_failure_;                               // why what it held is lost
   std::optional<std::array<std::int64_t, 3>> unconfirmed_;  // a trial that is committed, no more
   // Committed by a call that then failed.
   struct FailedCall {

@@ -186,7 +186,7 @@ void Store::add_session(SessionRow& session) {
 SaveOutcome Store::add_trial(const TrialRecord& record) {
   if (!confirms_) {
     add_to_batch(record);
-    return SaveOutcome::partly_in_log;
+    return SaveOutcome::in_one_file;  // resume_sync makes it so
   }
   const TrialRow& trial = record.trial;
   const std::array<std::int64_t, 3> key{trial.session_id, trial.number, trial.attempt};
@@ -211,38 +211,45 @@ bool is_answered(const TrialRecord& record) {
 }
 }  // namespace
 
-// A transaction a trial would cost more than the trial's rows.
+// A transaction a trial would cost more than the rows of one without a trace.
 void Store::add_to_batch(const TrialRecord& record) {
   constexpr int most_trials = 40;
-  if (batch_.trials == 0) {
-    database_.run("BEGIN IMMEDIATE");
-  }
-  check_batch_is_open();
-  insert_trial(record);
+  in_batch([&] {
+    if (!std::exchange(batch_.is_open, true)) {
+      database_.run("BEGIN IMMEDIATE");
+    }
+    insert_trial(record);
+  });
   if (is_answered(record)) {
     batch_.answers.push_back({record.trial, record.alternatives, *record.response});
   }
-  if (++batch_.trials == most_trials) {
+  if (++batch_.trials == most_trials || !record.trace.empty()) {
     commit_batch();
   }
 }
 
-// Where a write fails for want of space, SQLite rolls the whole transaction back by itself.
-void Store::check_batch_is_open() {
-  if (!database_.is_in_transaction()) {
-    throw StoreError{
-        fmt::format("{}: {} trials were lost when writing failed (delete the study and simulate it "
-                    "again)",
-                    database_.file(), batch_.trials)};
+// Where a write fails for want of space, SQLite rolls the whole transaction back by itself: nothing
+// is added after that.
+void Store::in_batch(const std::function<void()>& act) {
+  if (!batch_failure_.empty()) {
+    throw StoreError{batch_failure_};
+  }
+  try {
+    act();
+  } catch (const StoreError& error) {
+    if (!database_.is_in_transaction()) {
+      batch_failure_ = error.what();
+    }
+    throw;
   }
 }
 
 // What is rolled back must not be in the journal.
 void Store::commit_batch() {
-  if (batch_.trials > 0) {
-    check_batch_is_open();
-    database_.run("COMMIT");
+  if (!batch_.is_open) {
+    return;
   }
+  in_batch([&] { database_.run("COMMIT"); });
   const Batch batch = std::exchange(batch_, {});
   if (!journal_ || batch.answers.empty()) {
     return;

@@ -97,8 +97,10 @@ std::vector<std::string> split_row(const std::string& words, const std::string& 
   return csv.rows.empty() ? std::vector<std::string>{} : csv.rows.front().cells;
 }
 
-void write_files(const ReportOptions& options, const Summary& summary) {
+void write_files(const ReportOptions& options, const Summary& summary, Progress& progress) {
   const auto figure_files = analysis::figure_files(summary);
+  const core::CountHook count = progress.count();
+  std::size_t drawn = 0;
   std::vector<core::NewFile> files;
   const auto add = [&](const std::string& name, std::string text) {
     files.push_back({(fs::path{options.out} / name).string(), std::move(text)});
@@ -117,6 +119,7 @@ void write_files(const ReportOptions& options, const Summary& summary) {
   for (const analysis::FigureFile& figure : figure_files) {
     add("figures/" + figure.name + ".svg", figure.svg);
     add("figures/" + figure.name + ".pdf", analysis::pdf_of_svg(figure.svg));
+    core::tell_count(count, ++drawn, figure_files.size());
   }
   core::write_all_or_none(files, options.replace ? core::Existing::replaced : core::Existing::kept);
   constexpr std::size_t whole = 3;  // files that hold all of it
@@ -216,6 +219,7 @@ void run_report(ReportOptions options) {
     options.out = (fs::path{options.directories.front()} / report_folder).string();
   }
   check_output_is_new(options);
+  Progress progress{"making the report"};
   const Summary summary = summary_of(options);
   constexpr std::size_t most_lines = 15;  // of a table of participants
   constexpr std::size_t screen = 60;      // lines that somebody reads; programs get all
@@ -226,7 +230,7 @@ void run_report(ReportOptions options) {
   }
   std::cout << std::endl;
   if (!options.out.empty()) {
-    write_files(options, summary);
+    write_files(options, summary, progress);
   }
 }
 // How to read tables of other programs.

@@ -35,6 +35,7 @@
 #include "runner/studies/rendered_study.hpp"
 #include "runner/studies/stored_results.hpp"
 #include "runner/studies/stored_study.hpp"
+#include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
 // Participants may read one label for several stimuli; a reader of the report must not.
@@ -660,6 +661,8 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     return analysis::summarise(design, all.answers, all.visits, all.presentations);
   }
   leave_out_unwanted(wanted, all.answers, design);
+  Progress progress{"blocks summarised"};
+  design.count = progress.count();
   Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
   const DoneBlocks done = done_blocks(stores, mode);
   summary.sections = sections_of(protocol, stores, mode, done, wanted, tracks);

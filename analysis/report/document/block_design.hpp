@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/statistics/confusion_matrix.hpp"
+#include "core/model/progress.hpp"
 #include "core/psychometric_function.hpp"
 namespace tapstudy::analysis {
 // The part of a study's design that its report needs.
@@ -108,5 +109,6 @@ struct StudyDesign {
   std::string title;
   std::string notes;
   std::vector<BlockDesign> blocks;  // practice left out
+  core::CountHook count{};          // of blocks summarised
 };
 }  // namespace tapstudy::analysis

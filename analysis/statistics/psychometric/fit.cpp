@@ -67,18 +67,36 @@ Maximum local_maximum(const BinomialLikelihood& likelihood, const PsychometricBo
   return best;
 }
 
+namespace {
+// How the score falls as each parameter grows.
+Eigen::Matrix4d observed_information(const BinomialLikelihood& likelihood,
+                                     const PsychometricVector& at) {
+  constexpr double h = 1e-5;
+  Eigen::Matrix4d information;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    const PsychometricVector ahead = likelihood.slopes(at + h * PsychometricVector::Unit(i)).score;
+    const PsychometricVector behind = likelihood.slopes(at - h * PsychometricVector::Unit(i)).score;
+    information.col(i) = (behind - ahead) / (2.0 * h);
+  }
+  return 0.5 * (information + information.transpose());
+}
+}  // namespace
+
+// Newton's steps: those of Fisher's scoring may jump from one side of the maximum to the other.
 Maximum refined(const BinomialLikelihood& likelihood, const PsychometricBox& box,
                 const Maximum& rough) {
   PsychometricVector at = rough.at;
-  constexpr int most_steps = 200;
+  constexpr int most_steps = 20;
   constexpr double shortest = 1e-12;
-  double last_length = 1e-3;
+  double last_length = 1e-2;
   for (int i = 0; i < most_steps && last_length > shortest; ++i) {
     PsychometricVector score;
-    Eigen::Matrix4d information = remove_fixed_parameters(likelihood.slopes(at), box, at, score);
-    information.diagonal().array() += 1e-12;
-    const PsychometricVector step = information.ldlt().solve(score);
-    if (!(step.norm() < last_length)) {
+    const BinomialLikelihood::Slopes slopes{likelihood.slopes(at).score,
+                                            observed_information(likelihood, at)};
+    const Eigen::Matrix4d information = remove_fixed_parameters(slopes, box, at, score);
+    const Eigen::LDLT<Eigen::Matrix4d> solver{information};
+    const PsychometricVector step = solver.solve(score);
+    if (!solver.isPositive() || !(step.norm() < last_length)) {
       break;
     }
     last_length = step.norm();

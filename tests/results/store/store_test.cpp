@@ -80,6 +80,13 @@ TEST_CASE("a trial is there whole or not at all", "[results][store]") {
   CHECK(stored_answers(store).size() == 1);
 }
 
+namespace {
+TrialRecord without_trace(TrialRecord record) {
+  record.trace.clear();
+  return record;
+}
+}  // namespace
+
 TEST_CASE(
     "while nothing is confirmed, a trial is there whole or not at all, and in the journal alike",
     "[results][store]") {
@@ -88,7 +95,7 @@ TEST_CASE(
   store.suspend_sync();
   constexpr int trials = 95;  // more than two transactions
   for (int number = 1; number <= trials; ++number) {
-    store.add_trial(trial(row.id, number, "a"));
+    store.add_trial(without_trace(trial(row.id, number, "a")));
     TrialRecord broken = trial(row.id, number + trials, "a");
     broken.trace.push_back(broken.trace.front());  // refused after other rows
     CHECK_THROWS_AS(store.add_trial(broken), StoreError);
@@ -105,10 +112,11 @@ TEST_CASE("a program that ends while nothing is confirmed leaves no answer in th
     auto [store, row] = begun_study(directory.path());
     store.suspend_sync();
     for (int number = 1; number <= 50; ++number) {
-      store.add_trial(trial(row.id, number, "a"));
+      store.add_trial(without_trace(trial(row.id, number, "a")));
     }
   }
   Store store = Store::open_existing(directory.path());
+  CHECK(store.trials().size() == 40);
   CHECK(to_lines(read_journal(directory.path()).entries) == to_lines(store.entries_for_journal()));
 }
 

@@ -63,7 +63,8 @@ EigenPairs largest_eigenpairs(Eigen::MatrixXd A, Eigen::Index count) {
   const Eigen::MatrixXd whole = A;
   Eigen::VectorXd diagonal{n};
   Eigen::VectorXd beside = Eigen::VectorXd::Zero(n);
-  Eigen::VectorXd reflectors{n};
+  constexpr lapack_int read_ahead = 16;  // by OpenBLAS' dsymv, for which this is the result's place
+  Eigen::VectorXd reflectors = Eigen::VectorXd::Zero(n + read_ahead);
   check(LAPACKE_dsytrd(LAPACK_COL_MAJOR, 'L', n, A.data(), n, diagonal.data(), beside.data(),
                        reflectors.data()),
         eigenproblem, "dsytrd");
@@ -71,7 +72,8 @@ EigenPairs largest_eigenpairs(Eigen::MatrixXd A, Eigen::Index count) {
   Eigen::VectorXd of_values = beside;
   check(LAPACKE_dsterf(n, pairs.values.data(), of_values.data()), eigenproblem, "dsterf");
   const lapack_int wanted = as_lapack_int(count);
-  const Eigen::VectorXd largest = pairs.values.tail(count);
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(n);  // dstein's W, of which it uses the first
+  largest.head(count) = pairs.values.tail(count);
   const std::vector<lapack_int> one_block(static_cast<std::size_t>(n), 1);
   std::vector<lapack_int> ends(static_cast<std::size_t>(n), n);  // of blocks
   std::vector<lapack_int> failed(static_cast<std::size_t>(count));

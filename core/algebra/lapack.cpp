@@ -52,6 +52,27 @@ EigenPairs symmetric_eigenpairs(Eigen::MatrixXd A, Eigen::MatrixXd B) {
   return pairs;
 }
 
+namespace {
+// The lower half of A becomes the reflectors' vectors; their factors are returned. OpenBLAS' dsymv,
+// whose results lie in both arrays here, reads some numbers beyond them.
+Eigen::VectorXd to_tridiagonal(Eigen::MatrixXd& A, Eigen::VectorXd& diagonal,
+                               Eigen::VectorXd& beside) {
+  constexpr lapack_int read_ahead = 16;
+  const lapack_int n = as_lapack_int(A.rows());
+  Eigen::VectorXd factors = Eigen::VectorXd::Zero(n + read_ahead);
+  const auto reduce = [&](double* work, lapack_int size) {
+    check(LAPACKE_dsytrd_work(LAPACK_COL_MAJOR, 'L', n, A.data(), n, diagonal.data(), beside.data(),
+                              factors.data(), work, size),
+          eigenproblem, "dsytrd");
+  };
+  double wanted = 0.0;
+  reduce(&wanted, -1);
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(wanted) + read_ahead);
+  reduce(work.data(), static_cast<lapack_int>(wanted));
+  return factors;
+}
+}  // namespace
+
 // One tridiagonal matrix for both: its eigenvalues, and the vectors of some by inverse iteration,
 // take a small part of the time that all vectors take.
 EigenPairs largest_eigenpairs(Eigen::MatrixXd A, Eigen::Index count) {
@@ -63,11 +84,7 @@ EigenPairs largest_eigenpairs(Eigen::MatrixXd A, Eigen::Index count) {
   const Eigen::MatrixXd whole = A;
   Eigen::VectorXd diagonal{n};
   Eigen::VectorXd beside = Eigen::VectorXd::Zero(n);
-  constexpr lapack_int read_ahead = 16;  // by OpenBLAS' dsymv, for which this is the result's place
-  Eigen::VectorXd reflectors = Eigen::VectorXd::Zero(n + read_ahead);
-  check(LAPACKE_dsytrd(LAPACK_COL_MAJOR, 'L', n, A.data(), n, diagonal.data(), beside.data(),
-                       reflectors.data()),
-        eigenproblem, "dsytrd");
+  Eigen::VectorXd reflectors = to_tridiagonal(A, diagonal, beside);
   pairs.values = diagonal;
   Eigen::VectorXd of_values = beside;
   check(LAPACKE_dsterf(n, pairs.values.data(), of_values.data()), eigenproblem, "dsterf");

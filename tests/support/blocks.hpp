@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "protocols/reader/read_protocol.hpp"
+#include "protocols/schedule/schedule.hpp"
 #include "support/texts.hpp"
 // Studies of the paper's plates with blocks of these names.
 namespace tapstudy::testing {
@@ -19,6 +20,17 @@ inline std::string text_with_blocks(const Names& blocks, const std::string& keys
             (name.starts_with("practice") ? ", practice: true}\n" : "}\n");
   }
   return text + keys;
+}
+
+// The first alternative of each of a block's trials, in their order.
+inline Names stimuli_of(const std::string& block, const protocols::Schedule& schedule) {
+  Names names;
+  for (const protocols::PlannedTrial& trial : schedule) {
+    if (trial.block == block) {
+      names.push_back(trial.alternatives.front().stimulus);
+    }
+  }
+  return names;
 }
 
 inline protocols::Protocol with_blocks(const Names& blocks, const std::string& keys) {

@@ -318,14 +318,5 @@ class RemoteProgram final : public device::DatagramPipe {
   bool is_refused_{false};
 };
 
-// The program's own time.
-class ProgramClock final : public SteadyClock {
- public:
-  explicit ProgramClock(RemoteProgram& program) : program_{program} {}
-  device::Nanoseconds now() noexcept override { return program_.now(); }
-  void pass_to(device::Nanoseconds moment) noexcept override { program_.wait_until(moment); }
-
- private:
-  RemoteProgram& program_;
-};
+using ProgramClock = ClockOf<RemoteProgram>;
 }  // namespace tapstudy::testing

@@ -38,6 +38,18 @@ class SteadyClock : public device::TickClock {
   device::Nanoseconds now_{0};
 };
 
+// The time of a program or of a pipe that has its own.
+template <class Timed>
+class ClockOf final : public SteadyClock {
+ public:
+  explicit ClockOf(Timed& timed) : timed_{timed} {}
+  device::Nanoseconds now() noexcept override { return timed_.now(); }
+  void pass_to(device::Nanoseconds moment) noexcept override { timed_.wait_until(moment); }
+
+ private:
+  Timed& timed_;
+};
+
 // The loop with a plate of 3000 N/m, on any device, to be driven into each of its states.
 class StagedLoop {
  public:

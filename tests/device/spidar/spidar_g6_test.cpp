@@ -155,6 +155,13 @@ struct Bench : testing::SpidarOnBus {
     REQUIRE(spidar.home() == TickFault::none);
     home_m = hardware.position_m();
   }
+  // Under a force that changes with each tick.
+  void start_and_tick(int ticks, const Vec3& force_n, const Vec3& change_n) {
+    start();
+    for (int i = 0; i < ticks; ++i) {
+      REQUIRE(tick(force_n + i * change_n) == TickFault::none);
+    }
+  }
   TickFault tick(const Vec3& force_n, double elapsed_s = 1e-3) {
     core::HandState hand;
     const TickFault fault = spidar.read(hand, elapsed_s);
@@ -288,10 +295,7 @@ TEST_CASE("replies may be missing in a row for 10 ms, then it is a fault",
   if (echoes_before) {
     bench.hardware.echo_the_request_before();
   }
-  bench.start();
-  for (int i = 0; i < 50; ++i) {
-    REQUIRE(bench.tick({0.01 * i, 0, 0}) == TickFault::none);
-  }
+  bench.start_and_tick(50, Vec3::Zero(), {0.01, 0, 0});
   const Vec3 last_m = bench.seen.position_m;
   for (int missed = 1; missed <= 10; ++missed) {
     bench.bus.plan(Trouble::missing);
@@ -329,10 +333,7 @@ TEST_CASE("a trial ends once the board echoes that it has no force, be it a requ
   if (echoes_before) {
     bench.hardware.echo_the_request_before();
   }
-  bench.start();
-  for (int i = 0; i < 50; ++i) {
-    REQUIRE(bench.tick({3, 0, 0.01 * i}) == TickFault::none);
-  }
+  bench.start_and_tick(50, {3, 0, 0}, {0, 0, 0.01});
   bench.bus.forget_requests();
   CHECK(bench.spidar.zero_force() == device::StopOutcome::confirmed);
   CHECK(bench.bus.requests().size() == (echoes_before ? 2 : 1));
@@ -620,10 +621,7 @@ TEST_CASE("a reply of a tick ago is told from this one's, whichever request the 
   if (GENERATE(false, true)) {
     bench.hardware.echo_the_request_before();
   }
-  bench.start();
-  for (int i = 0; i < 100; ++i) {
-    REQUIRE(bench.tick({0.02 * i, 0, 0}) == TickFault::none);
-  }
+  bench.start_and_tick(100, Vec3::Zero(), {0.02, 0, 0});
   bench.bus.plan(Trouble::stale);
   CHECK(bench.tick({3, 0, 0}) == TickFault::wrong_echo);
 }

@@ -14,23 +14,13 @@ using namespace tapstudy;
 
 namespace {
 using testing::Names;
+using testing::stimuli_of;
 
 Names blocks_in(const protocols::Schedule& schedule) {
   Names names;
   for (const protocols::PlannedTrial& trial : schedule) {
     if (names.empty() || names.back() != trial.block) {
       names.push_back(trial.block);
-    }
-  }
-  return names;
-}
-
-// The order of the trials of one block.
-Names stimuli_of(const std::string& block, const protocols::Schedule& schedule) {
-  Names names;
-  for (const protocols::PlannedTrial& trial : schedule) {
-    if (trial.block == block) {
-      names.push_back(trial.alternatives.front().stimulus);
     }
   }
   return names;

@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "protocols/schedule/ordering.hpp"
+#include "support/blocks.hpp"
 #include "support/catch.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -489,15 +490,6 @@ std::string sequence_of(const protocols::Schedule& schedule) {
   return letters;
 }
 
-Names stimuli_in(const std::string& block, const protocols::Schedule& schedule) {
-  Names stimuli;
-  for (const protocols::PlannedTrial& trial : schedule) {
-    if (trial.block == block) {
-      stimuli.push_back(trial.alternatives.front().stimulus);
-    }
-  }
-  return stimuli;
-}
 }  // namespace
 
 TEST_CASE("every order of mixed trials is equally likely that keeps each block's own",
@@ -513,7 +505,7 @@ TEST_CASE("every order of mixed trials is equally likely that keeps each block's
     ++orders[sequence_of(schedule)];
     for (const std::string block : {"practice", "a", "m"}) {
       const auto alone = protocols::make_schedule(apart, seed, i);
-      agrees = agrees && stimuli_in(block, schedule) == stimuli_in(block, alone);
+      agrees = agrees && testing::stimuli_of(block, schedule) == testing::stimuli_of(block, alone);
     }
   }
   CHECK(agrees);

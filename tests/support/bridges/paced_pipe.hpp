@@ -52,13 +52,5 @@ class PacedPipe final : public device::DatagramPipe {
   Nanoseconds replies_at_{0};
 };
 
-class PacedClock final : public SteadyClock {
- public:
-  explicit PacedClock(PacedPipe& pipe) : pipe_{pipe} {}
-  device::Nanoseconds now() noexcept override { return pipe_.now(); }
-  void pass_to(device::Nanoseconds moment) noexcept override { pipe_.wait_until(moment); }
-
- private:
-  PacedPipe& pipe_;
-};
+using PacedClock = ClockOf<PacedPipe>;
 }  // namespace tapstudy::testing

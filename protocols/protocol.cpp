@@ -48,6 +48,10 @@ const Block& Protocol::leader(const Block& block) const {
   return found == blocks.end() ? block : *found;
 }
 
+bool Protocol::are_mixed(const Block& one, const Block& other) const {
+  return leader(one).name == leader(other).name;
+}
+
 bool may_procedures_end_early(const Block& block) {
   return block.comparison && std::ranges::any_of(block.comparison->tracks, [](const auto& track) {
            return track->may_end_early();

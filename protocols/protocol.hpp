@@ -342,6 +342,8 @@ struct Protocol {
   const Block* find_block(const std::string& name) const;  // nullptr if there is none
   // The block of the same session with whose trials its own are mixed; without one, itself.
   const Block& leader(const Block& block) const;
+  // Whether these blocks, of one session, are one sequence of trials.
+  bool are_mixed(const Block& one, const Block& other) const;
   const Group& group(const std::string& name) const;
   // nullptr if there is none.
   const PlannedSession* find_session(const std::string& name) const;

@@ -146,7 +146,7 @@ TickFault RemoteHand::ask() noexcept {
   });
   if (fault == TickFault::none) {
     detail_.achieved_n = reply_.exerted_n.value_or(core::Vec3::Constant(untold));
-    text_ = reply_.sample ? reply_.sample->text : decltype(text_){};
+    text_.set(reply_.sample ? reply_.sample->text : decltype(text_)::Characters{});
   }
   return fault;
 }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string_view>
+#include <string>
 
 #include "core/haptics/haptic_state.hpp"
 #include "device/device.hpp"
@@ -13,6 +13,7 @@
 #include "device/remote/datagram_pipe.hpp"
 #include "device/remote/packets.hpp"
 #include "device/remote/reply_checks.hpp"
+#include "device/remote/shared_text.hpp"
 #include "device/velocity_estimate.hpp"
 namespace tapstudy::device {
 struct RemoteLimits {
@@ -47,8 +48,8 @@ class RemoteHand final : public Device {
   int version() const noexcept { return version_; }
   // Of version 3.
   const std::optional<RemoteDescription>& introduction() const noexcept { return introduction_; }
-  // What its last reply says to the operator (version 3); empty: nothing.
-  std::string_view text() const noexcept { return text_.data(); }
+  // What its last reply says to the operator (version 3); empty: nothing. Any thread.
+  std::string text() const { return text_.get(); }
   // Falls silent for so long, and asks whether the other program has released the force meanwhile.
   enum class Release {
     released,
@@ -101,7 +102,7 @@ class RemoteHand final : public Device {
   bool is_velocity_measured_{true};
   bool is_holding_{false};  // a reply of this trial reported so
   double released_s_{0.0};  // so long every reply of this trial reported a release
-  std::array<char, sizeof(wire::Reply::text)> text_{};
+  SharedText<sizeof(wire::Reply::text)> text_;
   DeviceDetail detail_;
 };
 }  // namespace tapstudy::device

@@ -41,8 +41,7 @@ std::vector<Part> parts_of(const Protocol& protocol, const Group* group) {
 // The unit with whose block this one is mixed; nullptr if there is none.
 Unit* unit_led_alike(const Protocol& protocol, const Block& block, std::vector<Unit>& units) {
   const auto found = std::ranges::find_if(units, [&](const Unit& unit) {
-    return !block.mixed_with.empty() &&
-           protocol.leader(protocol.blocks[unit.back()]).name == protocol.leader(block).name;
+    return !block.mixed_with.empty() && protocol.are_mixed(protocol.blocks[unit.back()], block);
   });
   return found == units.end() ? nullptr : &*found;
 }
@@ -192,11 +191,9 @@ namespace {
 // Those that are mixed with one another, in the protocol's order; most are alone.
 std::vector<Unit> mixed_units(const Protocol& protocol, const std::vector<std::size_t>& sequence) {
   std::vector<Unit> mixed;
-  const auto leader_at = [&](std::size_t i) -> const Block& {
-    return protocol.leader(protocol.blocks[i]);
-  };
   for (const std::size_t i : sequence) {
-    if (mixed.empty() || leader_at(mixed.back().back()).name != leader_at(i).name) {
+    if (mixed.empty() ||
+        !protocol.are_mixed(protocol.blocks[mixed.back().back()], protocol.blocks[i])) {
       mixed.emplace_back();
     }
     mixed.back().push_back(i);

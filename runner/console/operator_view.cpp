@@ -149,6 +149,16 @@ Json log_of(const DeskView& desk, bool is_blind) {
   }
   return log;
 }
+
+// Beside what is said of the force.
+std::vector<std::string> warnings_of(const SessionInView& session, const DeskView& desk) {
+  std::vector<std::string> warnings{session.last_fault, desk.held_by};
+  if (!desk.device_says.empty()) {
+    warnings.push_back("The device says: " + desk.device_says);
+  }
+  std::erase(warnings, "");
+  return warnings;
+}
 }  // namespace
 
 std::string state_json(const SessionInView& session, const DeskView& desk,
@@ -172,12 +182,11 @@ std::string state_json(const SessionInView& session, const DeskView& desk,
       {"ticks", {{"total", totals.ticks}, {"late", totals.late}}},
       {"masking", session.masking ? json_of(*session.masking) : Json{}},
       {"warnings", Json::array()}};
-  const std::string force =
-      desk.force == ForceState::unknown ? std::string{device::force_may_be_on} : std::string{};
-  for (const std::string& warning : {force, session.last_fault, desk.held_by}) {
-    if (!warning.empty()) {
-      json["warnings"].push_back(warning);
-    }
+  if (desk.force == ForceState::unknown) {
+    json["warnings"].push_back(device::force_may_be_on);
+  }
+  for (const std::string& warning : warnings_of(session, desk)) {
+    json["warnings"].push_back(warning);
   }
   return dumped(json);
 }
@@ -296,8 +305,8 @@ std::string status_text(const SessionInView& session, const DeskView& desk,
                       totals.late, totals.ticks, session.device, force_text(desk.force));
   text += session.masking ? masking_text(*session.masking) : "";
   text += session.has_participant_page ? "" : "  the participant's page is not open\n";
-  for (const std::string& warning : {session.last_fault, desk.held_by}) {
-    text += warning.empty() ? "" : fmt::format("  {}\n", warning);
+  for (const std::string& warning : warnings_of(session, desk)) {
+    text += fmt::format("  {}\n", warning);
   }
   return text;
 }

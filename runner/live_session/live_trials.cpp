@@ -129,8 +129,8 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
             recorder_},
       tap_markers_{parts.session.row.id,
                    [this](const results::SessionEventRow& marker) { send(marker); }},
-      at_terminal_{parts.input, parts.commands, [this] { device_->get_ready(); }},
-      console_{console_of(parts, desk_, [this] { device_->get_ready(); })},
+      at_terminal_{parts.input, parts.commands, [this] { get_ready(); }},
+      console_{console_of(parts, desk_, [this] { get_ready(); })},
       states_{parts.session.row.id, [this] { return now_s(); },
               [this](const results::SessionEventRow& change) {
                 trial_ = change.number.value_or(0);
@@ -162,6 +162,7 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
     if (console_) {
       console_->watch(sample);
     }
+    hear_device();
     parts_.markers.send_force(
         {sample.force_n, std::chrono::nanoseconds{at.time_since_epoch()}.count()});
     tap_markers_.add(sample, std::chrono::duration<double>(at - begun_).count(), trial_);
@@ -172,6 +173,28 @@ std::function<void(std::string_view, const std::string&)> LiveTrials::masking_ma
   return [this](std::string_view state, const std::string& detail) {
     send({parts_.session.row.id, now_s(), std::string{state}, trial_, detail});
   };
+}
+
+// Before each trial.
+void LiveTrials::get_ready() {
+  device_->get_ready();
+  hear_device();
+  if (!console_ && !device_says_.empty()) {
+    say("\nThe device says: {}\n", device_says_);
+  }
+}
+
+// The participant's terminal is left alone while a trial runs.
+void LiveTrials::hear_device() {
+  std::string text = device_->text_for_operator();
+  if (text == device_says_) {
+    return;
+  }
+  device_says_ = std::move(text);
+  desk_.device_says(device_says_);
+  if (console_ && !device_says_.empty()) {
+    say("\nThe device says: {}\n", device_says_);
+  }
 }
 
 // Otherwise a presentation would leave no trace if the program were killed in it. The trial does

@@ -46,12 +46,15 @@ class LiveTrials {
   double now_s() const;                               // from the session's begin
   void send(const results::SessionEventRow& change);  // as a marker
   void store_presentation();
+  void get_ready();
+  void hear_device();
   std::function<void(std::string_view state, const std::string& detail)> masking_marker();
 
   Parts parts_;
   std::unique_ptr<SessionDevice> device_;
   Clock::time_point begun_{Clock::now()};
   std::atomic<int> trial_{0};  // the latest
+  std::string device_says_;    // between trials the engine's thread's, in them the recorder's
   results::Recorder recorder_;
   LiveTrialLoop live_loop_;
   std::optional<MaskedTrialLoop> masked_loop_;

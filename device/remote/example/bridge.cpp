@@ -26,6 +26,7 @@ class Finger final : public bridge::Device {
     reply.position_m = position_m_;
     reply.velocity_m_s = velocity_m_s_;
     reply.exerted_n = force_n_;
+    bridge::put_text(reply.text, "a finger that is computed");  // for the operator
   }
 
  private:

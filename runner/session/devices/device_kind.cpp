@@ -34,14 +34,14 @@ std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
                                          const DeviceRequest& request,
                                          std::unique_ptr<SessionDevice> broken) {
   const device::DeviceError gives_up{what_happened + " (go on with --resume)"};
-  const std::string words = broken ? broken->last_words() : std::string{};
+  const std::string text = broken ? broken->text_for_operator() : std::string{};
   if (!request.rig.has_hardware) {
     throw gives_up;
   }
   const DeviceKind& kind = kind_of(request.rig);
   std::string task = fmt::format(
       "\n{}.\n{}Type quit to stop here; or check the device, its power and cable, and to continue,",
-      what_happened, words.empty() ? words : fmt::format("The device says: {}\n", words));
+      what_happened, text.empty() ? text : fmt::format("The device says: {}\n", text));
   while (request.ask_operator(task)) {
     task = "It is not there yet. To try again,";
     if (!kind.is_there()) {

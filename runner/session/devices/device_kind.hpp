@@ -26,8 +26,8 @@ class SessionDevice {
   // What was found when it was tried, at zero force, whether the device lets go of the force when
   // the program falls silent; empty if there is nothing to try.
   virtual std::string release() const { return {}; }
-  // What the device itself says to the operator; asked after a fault.
-  virtual std::string last_words() const { return {}; }
+  // What the device itself says to the operator; empty: nothing. Any thread, while the loop runs.
+  virtual std::string text_for_operator() const { return {}; }
 };
 
 // The context in which a device is opened.

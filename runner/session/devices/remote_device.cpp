@@ -36,7 +36,7 @@ class RemoteDevice final : public SessionDevice {
   device::Device& device() override { return hand_; }
   device::RemoteHand& hand() { return hand_; }
   void get_ready() override {}
-  std::string last_words() const override { return std::string{hand_.text()}; }
+  std::string text_for_operator() const override { return hand_.text(); }
   std::optional<device::LatenessCount> round_trip() const override { return round_trip_; }
   std::string release() const override { return release_; }
   // Throws DeviceError where a force might stay on if this program died.

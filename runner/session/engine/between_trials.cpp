@@ -66,15 +66,15 @@ void BetweenTrials::begin(bool has_trials) {
   }
 }
 
-const protocols::Block& BetweenTrials::leader(const std::string& block) const {
-  return parts_.protocol.leader(parts_.protocol.block(block));
+bool BetweenTrials::are_mixed(const std::string& one, const std::string& other) const {
+  return parts_.protocol.are_mixed(parts_.protocol.block(one), parts_.protocol.block(other));
 }
 
 // Also those of a block that an earlier session finished, but for its questionnaires.
 void BetweenTrials::ask_after_blocks(const protocols::Schedule& presented,
                                      const std::optional<std::string>& up_to) {
   for (const protocols::PlannedTrial& trial : presented) {
-    if (up_to && leader(trial.block).name == leader(*up_to).name) {
+    if (up_to && are_mixed(trial.block, *up_to)) {
       return;
     }
     ask(parts_.protocol.block(trial.block).forms_after, trial.block);
@@ -83,24 +83,24 @@ void BetweenTrials::ask_after_blocks(const protocols::Schedule& presented,
 
 void BetweenTrials::before(const protocols::PlannedTrial& trial,
                            const protocols::Schedule& presented) {
-  const protocols::Block& block = leader(trial.block);
-  if (!block_ || leader(*block_).name != block.name) {
+  const protocols::Block& block = parts_.protocol.block(trial.block);
+  if (!block_ || !are_mixed(*block_, trial.block)) {
     ask_after_blocks(presented, trial.block);
-    introduce(parts_.protocol.block(trial.block), presented);
+    introduce(block, presented);
     trials_since_rest_ = 0;
     rested_at_s_ = parts_.states.now_s();
   }
   block_ = trial.block;
-  rest_if_due(block);
+  rest_if_due(parts_.protocol.leader(block));
   ++trials_since_rest_;
 }
 
 // With the blocks that are mixed with it, in the protocol's order.
 void BetweenTrials::introduce(const protocols::Block& block, const protocols::Schedule& presented) {
   for (const protocols::Block& other : parts_.protocol.blocks) {
-    const bool is_of_them = leader(other.name).name == leader(block.name).name;
-    if (is_of_them && std::ranges::find(presented, other.name, &protocols::PlannedTrial::block) !=
-                          presented.end()) {
+    if (are_mixed(other.name, block.name) &&
+        std::ranges::find(presented, other.name, &protocols::PlannedTrial::block) !=
+            presented.end()) {
       read(other.instructions, other.instructions_picture, other.name);
     }
   }

@@ -67,7 +67,7 @@ class BetweenTrials {
   void read(const std::string& text, const std::optional<protocols::Picture>& picture,
             const std::string& whose);
   void introduce(const protocols::Block& block, const protocols::Schedule& presented);
-  const protocols::Block& leader(const std::string& block) const;
+  bool are_mixed(const std::string& one, const std::string& other) const;
   void rest_if_due(const protocols::Block& block);
   // Of these forms what is asked now and was not asked here before.
   void ask(const std::vector<std::string>& forms, const std::string& asked);

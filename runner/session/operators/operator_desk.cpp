@@ -242,6 +242,11 @@ void OperatorDesk::force_is(ForceState force) {
   force_ = force;
 }
 
+void OperatorDesk::device_says(const std::string& text) {
+  const std::lock_guard lock{mutex_};
+  device_says_ = text;
+}
+
 bool OperatorDesk::is_paused() const {
   const std::lock_guard lock{mutex_};
   return is_paused_;
@@ -293,7 +298,7 @@ bool OperatorDesk::is_excluded() const {
 
 DeskView OperatorDesk::view() const {
   const std::lock_guard lock{mutex_};
-  DeskView view{trial_, current_, last_answer_, {}, force_, is_paused_, held_by_, {}};
+  DeskView view{trial_, current_, last_answer_, {}, force_, is_paused_, held_by_, device_says_, {}};
   for (const Logged& logged : log_) {
     const bool is_stored = is_over(logged.stored) && has_succeeded(logged.stored);
     view.log.push_back({logged.row, is_stored});

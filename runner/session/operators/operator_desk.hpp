@@ -23,7 +23,8 @@ struct DeskView {
   std::vector<Entry> log;
   ForceState force{ForceState::off};
   bool is_paused{};
-  std::string held_by;  // why the operator is needed; empty: not
+  std::string held_by;      // why the operator is needed; empty: not
+  std::string device_says;  // empty: nothing
   std::vector<OperatorAction> possible;
 };
 
@@ -51,6 +52,8 @@ class OperatorDesk final : public Operator {
   // is possible.
   bool waits_for_operator(const std::string& why, const std::function<void()>& tell);
   DeskView view() const;
+  // A device's own text for the operator; empty: nothing more.
+  void device_says(const std::string& text);
   // A trial that is over, and may be remarked on.
   void trial_was(int number);
 
@@ -95,5 +98,6 @@ class OperatorDesk final : public Operator {
   ForceState force_{ForceState::off};
   bool is_paused_{false};
   std::string held_by_;
+  std::string device_says_;
 };
 }  // namespace tapstudy::runner

@@ -286,6 +286,31 @@ std::vector<std::uint8_t> bytes_of(const Datagram& datagram) {
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
+TEST_CASE("a text that is replaced while it is read is read whole", "[device][remote][threads]") {
+  using Text = device::SharedText<96>;
+  const auto text_of = [](char letter, std::size_t length) {
+    Text::Characters text{};
+    std::fill_n(text.begin(), length, letter);
+    return text;
+  };
+  Text text;
+  text.set(text_of('a', 95));
+  std::jthread writer{[&] {
+    for (int i = 0; i < 200'000; ++i) {
+      text.set(i % 2 == 0 ? text_of('b', 40) : text_of('a', 95));
+    }
+    text.set(text_of('c', 3));
+  }};
+  std::string read;
+  int torn = 0;
+  while (read != "ccc") {
+    read = text.get();
+    torn += static_cast<int>(read != std::string(95, 'a') && read != std::string(40, 'b') &&
+                             read != "ccc");
+  }
+  CHECK(torn == 0);
+}
+
 TEST_CASE("a reply of version 3 that breaks a rule of the format is none", "[device][remote]") {
   const Reply valid;
   REQUIRE(device::decoded_reply(bytes_of(valid)));

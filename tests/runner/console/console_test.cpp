@@ -264,9 +264,7 @@ runner::DeskView desk_with(const protocols::Block& block) {
   return desk;
 }
 
-std::string status(bool is_blind, runner::ForceState force = runner::ForceState::on) {
-  protocols::Block block;
-  block.name = "control";
+runner::SessionInView session_in_view(bool is_blind) {
   runner::SessionInView session;
   session.participant_id = "P01";
   session.mode = "pilot";
@@ -275,9 +273,15 @@ std::string status(bool is_blind, runner::ForceState force = runner::ForceState:
   session.state = "exploring";
   session.has_participant_page = true;
   session.masking = runner::MaskingInView{true, -20.0, 3};
+  return session;
+}
+
+std::string status(bool is_blind, runner::ForceState force = runner::ForceState::on) {
+  protocols::Block block;
+  block.name = "control";
   auto desk = desk_with(block);
   desk.force = force;
-  return runner::status_text(session, desk, {12345, 2, 4});
+  return runner::status_text(session_in_view(is_blind), desk, {12345, 2, 4});
 }
 }  // namespace
 
@@ -294,6 +298,18 @@ TEST_CASE("the operator's terminal says what the operator's page shows", "[runne
 TEST_CASE("a force that nobody confirmed to be off is never called off", "[runner][console]") {
   const std::string text = status(false, runner::ForceState::unknown);
   CHECK_THAT(text, Contains(device::force_may_be_on) && !Contains("force off"));
+}
+
+TEST_CASE("what a device says to the operator is at the page and at the terminal",
+          "[runner][console]") {
+  const runner::SessionInView session = session_in_view(false);
+  runner::DeskView desk;
+  CHECK_THAT(runner::state_json(session, desk, {}), Contains(R"("warnings":[])"));
+  desk.device_says = "the motors are hot";
+  CHECK_THAT(runner::status_text(session, desk, {}),
+             Contains("The device says: the motors are hot"));
+  CHECK_THAT(runner::state_json(session, desk, {}),
+             Contains(R"("warnings":["The device says: the motors are hot"])"));
 }
 
 TEST_CASE("a blind operator's terminal names no stimulus", "[runner][console]") {

@@ -179,9 +179,7 @@ std::function<void(std::string_view, const std::string&)> LiveTrials::masking_ma
 void LiveTrials::get_ready() {
   device_->get_ready();
   hear_device();
-  if (!console_ && !device_says_.empty()) {
-    say("\nThe device says: {}\n", device_says_);
-  }
+  repeat_device();
 }
 
 // The participant's terminal is left alone while a trial runs.
@@ -191,8 +189,15 @@ void LiveTrials::hear_device() {
     return;
   }
   device_says_ = std::move(text);
+  is_said_ = device_says_.empty();
   desk_.device_says(device_says_);
-  if (console_ && !device_says_.empty()) {
+  if (console_) {
+    repeat_device();
+  }
+}
+
+void LiveTrials::repeat_device() {
+  if (!std::exchange(is_said_, true)) {
     say("\nThe device says: {}\n", device_says_);
   }
 }

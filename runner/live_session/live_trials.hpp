@@ -48,6 +48,7 @@ class LiveTrials {
   void store_presentation();
   void get_ready();
   void hear_device();
+  void repeat_device();
   std::function<void(std::string_view state, const std::string& detail)> masking_marker();
 
   Parts parts_;
@@ -55,6 +56,7 @@ class LiveTrials {
   Clock::time_point begun_{Clock::now()};
   std::atomic<int> trial_{0};  // the latest
   std::string device_says_;    // between trials the engine's thread's, in them the recorder's
+  bool is_said_{true};
   results::Recorder recorder_;
   LiveTrialLoop live_loop_;
   std::optional<MaskedTrialLoop> masked_loop_;

@@ -164,11 +164,14 @@ void write_references(std::ostream& out, const std::vector<std::string>& cited) 
   if (cited.empty()) {
     return;
   }
-  out << "<h2>References</h2>\n<ul class=references>\n";
+  core::print(out,
+              "<details class=section><summary><h3>References ({})</h3></summary>\n"
+              "<ul class=references>\n",
+              cited.size());
   for (const std::string& reference : cited) {
     core::print(out, "<li>{}</li>\n", escaped(reference));
   }
-  out << "</ul>\n";
+  out << "</ul></details>\n";
 }
 }  // namespace
 

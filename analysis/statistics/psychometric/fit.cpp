@@ -12,7 +12,6 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr int max_iterations = 300;
-constexpr double most_damping = 1e12;
 
 bool is_held(const PsychometricBox& box, const PsychometricVector& at,
              const PsychometricVector& score, Eigen::Index i) {
@@ -36,35 +35,67 @@ Eigen::Matrix4d remove_fixed_parameters(const BinomialLikelihood::Slopes& slopes
   }
   return information;
 }
+
+// Fisher scoring with Levenberg's damping.
+class Climb {
+ public:
+  Climb(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+        const PsychometricVector& start, double smallest_gain)
+      : likelihood_{&likelihood},
+        box_{&box},
+        smallest_gain_{smallest_gain},
+        at_{start.cwiseMax(box.low).cwiseMin(box.high)},
+        here_{likelihood.slopes(at_)} {}
+
+  // So many steps, or as many as there are.
+  void advance(int steps) {
+    for (int i = 0; i < steps && !is_over_; ++i) {
+      step();
+    }
+  }
+  Maximum best() const { return {at_, here_.log_likelihood}; }
+
+ private:
+  void step() {
+    constexpr double most_damping = 1e12;
+    PsychometricVector score;
+    Eigen::Matrix4d information = remove_fixed_parameters(here_, *box_, at_, score);
+    information.diagonal() *= 1.0 + damping_;
+    information.diagonal().array() += 1e-12;
+    const PsychometricVector next = (at_ + PsychometricVector{information.ldlt().solve(score)})
+                                        .cwiseMax(box_->low)
+                                        .cwiseMin(box_->high);
+    const BinomialLikelihood::Slopes there =
+        next.allFinite() ? likelihood_->slopes(next)
+                         : BinomialLikelihood::Slopes{.log_likelihood = impossible};
+    if (there.log_likelihood >= here_.log_likelihood) {
+      const double gain = there.log_likelihood - here_.log_likelihood;
+      is_over_ = gain < smallest_gain_ && damping_ < 1.0;
+      at_ = next;
+      here_ = there;
+      damping_ = std::max(1e-9, 0.1 * damping_);
+    } else {
+      damping_ = 10.0 * damping_;
+      is_over_ = !(damping_ < most_damping);
+    }
+  }
+
+  static constexpr double impossible = -std::numeric_limits<double>::infinity();
+  const BinomialLikelihood* likelihood_;
+  const PsychometricBox* box_;
+  double smallest_gain_;
+  PsychometricVector at_;
+  BinomialLikelihood::Slopes here_;
+  double damping_{1e-3};
+  bool is_over_{false};
+};
 }  // namespace
 
 Maximum local_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
                       const PsychometricVector& start, double smallest_gain) {
-  Maximum best{start.cwiseMax(box.low).cwiseMin(box.high), 0.0};
-  best.log_likelihood = likelihood.value(best.at);
-  double damping = 1e-3;
-  for (int iteration = 0; iteration < max_iterations && damping < most_damping; ++iteration) {
-    PsychometricVector score;
-    Eigen::Matrix4d information =
-        remove_fixed_parameters(likelihood.slopes(best.at), box, best.at, score);
-    information.diagonal() *= 1.0 + damping;
-    information.diagonal().array() += 1e-12;
-    const PsychometricVector step = information.ldlt().solve(score);
-    const PsychometricVector next = (best.at + step).cwiseMax(box.low).cwiseMin(box.high);
-    const double value =
-        next.allFinite() ? likelihood.value(next) : -std::numeric_limits<double>::infinity();
-    if (value >= best.log_likelihood) {
-      const double gain = value - best.log_likelihood;
-      best = {next, value};
-      if (gain < smallest_gain && damping < 1.0) {
-        break;
-      }
-      damping = std::max(1e-9, 0.1 * damping);
-    } else {
-      damping = 10.0 * damping;
-    }
-  }
-  return best;
+  Climb climb{likelihood, box, start, smallest_gain};
+  climb.advance(max_iterations);
+  return climb.best();
 }
 
 namespace {
@@ -91,8 +122,8 @@ Maximum refined(const BinomialLikelihood& likelihood, const PsychometricBox& box
   double last_length = 1e-2;
   for (int i = 0; i < most_steps && last_length > shortest; ++i) {
     PsychometricVector score;
-    const BinomialLikelihood::Slopes slopes{likelihood.slopes(at).score,
-                                            observed_information(likelihood, at)};
+    BinomialLikelihood::Slopes slopes = likelihood.slopes(at);
+    slopes.information = observed_information(likelihood, at);
     const Eigen::Matrix4d information = remove_fixed_parameters(slopes, box, at, score);
     const Eigen::LDLT<Eigen::Matrix4d> solver{information};
     const PsychometricVector step = solver.solve(score);
@@ -253,55 +284,138 @@ std::vector<double> start_lapses(const PsychometricBox& box) {
   return low == high ? std::vector{low} : std::vector{low, 0.5 * (low + high), high};
 }
 
-PsychometricVector likeliest_position(const BinomialLikelihood& likelihood,
-                                      const PsychometricBox& box,
-                                      const std::vector<double>& positions, double slope,
-                                      double lapse) {
-  Maximum best{{positions.front(), slope, box.low[guess_at], lapse},
-               -std::numeric_limits<double>::infinity()};  // if impossible at every position
-  const bool is_guess_free = box.low[guess_at] < box.high[guess_at];
-  const std::vector<double> shares = is_guess_free ? std::vector{0.1, 0.5} : std::vector{0.0};
-  for (const double position : positions) {
-    for (const double share : shares) {
-      const double guess = box.low[guess_at] + share * (box.high[guess_at] - box.low[guess_at]);
-      const PsychometricVector at =
-          PsychometricVector{position, slope, guess, lapse}.cwiseMax(box.low).cwiseMin(box.high);
-      if (const double value = likelihood.value(at); !(value <= best.log_likelihood)) {
-        best = {at, value};
-      }
-    }
-  }
-  return best.at;
+// Impossible answers stay so, but have no effect where there are none of them: 0 times it is 0.
+double log_of(double probability) {
+  constexpr double impossible = 1e-300;
+  return std::log(std::max(probability, impossible));
 }
 
-// The likeliest start of each slope and lapse rate: each may have a maximum of its own.
-std::vector<PsychometricVector> starts_of(const BinomialLikelihood& likelihood,
-                                          const PsychometricBox& box) {
-  const std::vector<double> positions = start_positions(likelihood, box);
-  std::vector<PsychometricVector> starts;
-  for (const double slope :
-       start_slopes(axis_range(likelihood.levels(), likelihood.shape()), box)) {
-    for (const double lapse : start_lapses(box)) {
-      starts.push_back(likeliest_position(likelihood, box, positions, slope, lapse));
-    }
+std::vector<double> start_guesses(const PsychometricBox& box) {
+  const double low = box.low[guess_at];
+  const double width = box.high[guess_at] - low;
+  return width > 0.0 ? std::vector{low + 0.1 * width, low + 0.5 * width} : std::vector{low};
+}
+// The higher one of two that have met.
+void add_if_apart(const Climb& climb, std::vector<Climb>& others) {
+  constexpr double near = 1e-2;  // of a width of the function, and of a rate's range
+  const auto met = std::ranges::find_if(others, [&](const Climb& other) {
+    const PsychometricVector apart = climb.best().at - other.best().at;
+    const double slope = std::exp(other.best().at[log_slope_at]);
+    return std::abs(apart[threshold_at]) * slope < near && std::abs(apart[log_slope_at]) < near &&
+           std::abs(apart[guess_at]) < 0.1 * near && std::abs(apart[lapse_at]) < 0.1 * near;
+  });
+  if (met == others.end()) {
+    others.push_back(climb);
+  } else if (climb.best().log_likelihood > met->best().log_likelihood) {
+    *met = climb;
   }
-  return starts;
 }
 }  // namespace
 
-Maximum global_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                       const std::vector<PsychometricVector>& further_starts) {
-  std::vector<PsychometricVector> starts = starts_of(likelihood, box);
-  starts.insert(starts.end(), further_starts.begin(), further_starts.end());
-  constexpr double rough_gain = 1e-6;  // tells the maxima apart; the greatest is climbed to the end
-  Maximum best{starts.front(), -std::numeric_limits<double>::infinity()};
-  for (const PsychometricVector& start : starts) {
-    const Maximum found = local_maximum(likelihood, box, start, rough_gain);
-    if (found.log_likelihood > best.log_likelihood) {
-      best = found;
+MaximumSearch::MaximumSearch(const BinomialLikelihood& likelihood, const PsychometricBox& box)
+    : box_{box} {
+  const std::vector<double> positions = start_positions(likelihood, box);
+  const std::vector<double> slopes =
+      start_slopes(axis_range(likelihood.levels(), likelihood.shape()), box);
+  const std::vector<double> lapses = start_lapses(box);
+  const std::vector<double> guesses = start_guesses(box);
+  in_a_group_ = static_cast<Eigen::Index>(positions.size() * guesses.size());
+  const auto points = in_a_group_ * static_cast<Eigen::Index>(slopes.size() * lapses.size());
+  const auto levels = static_cast<Eigen::Index>(likelihood.levels().size());
+  points_.reserve(static_cast<std::size_t>(points));
+  log_success_.resize(points, levels);
+  log_failure_.resize(points, levels);
+  for (const double slope : slopes) {
+    std::vector<std::vector<double>> shapes;
+    for (const double position : positions) {
+      shapes.push_back(likelihood.shape_values({position, slope, 0.0, 0.0}));
+    }
+    for (const double lapse : lapses) {
+      for (std::size_t i = 0; i < positions.size(); ++i) {
+        for (const double guess : guesses) {
+          add({positions[i], slope, guess, lapse}, likelihood, shapes[i]);
+        }
+      }
     }
   }
-  return refined(likelihood, box, local_maximum(likelihood, box, best.at));
+}
+
+void MaximumSearch::add(const PsychometricVector& at, const BinomialLikelihood& likelihood,
+                        const std::vector<double>& shape_values) {
+  const auto row = static_cast<Eigen::Index>(points_.size());
+  const double guess = likelihood.guess(at);
+  const double gain = 1.0 - guess - at[lapse_at];
+  for (std::size_t i = 0; i < shape_values.size(); ++i) {
+    const double p = guess + gain * shape_values[i];
+    log_success_(row, static_cast<Eigen::Index>(i)) = log_of(p);
+    log_failure_(row, static_cast<Eigen::Index>(i)) = log_of(1.0 - p);
+  }
+  points_.push_back(at.cwiseMax(box_.low).cwiseMin(box_.high));
+}
+
+std::vector<PsychometricVector> MaximumSearch::starts(const BinomialLikelihood& likelihood) const {
+  const auto levels = static_cast<Eigen::Index>(likelihood.levels().size());
+  Eigen::VectorXd successes{levels};
+  Eigen::VectorXd failures{levels};
+  for (Eigen::Index i = 0; i < levels; ++i) {
+    const Proportion& answers = likelihood.levels()[static_cast<std::size_t>(i)].answers;
+    successes[i] = static_cast<double>(answers.successes);
+    failures[i] = static_cast<double>(answers.trials - answers.successes);
+  }
+  const Eigen::VectorXd values = log_success_ * successes + log_failure_ * failures;
+  std::vector<PsychometricVector> starts;
+  for (Eigen::Index group = 0; group < values.size(); group += in_a_group_) {
+    Eigen::Index likeliest = 0;
+    values.segment(group, in_a_group_).maxCoeff(&likeliest);
+    starts.push_back(points_[static_cast<std::size_t>(group + likeliest)]);
+  }
+  return starts;
+}
+
+// Climbs that have met go on as one.
+Maximum MaximumSearch::rough_maximum(const BinomialLikelihood& likelihood,
+                                     const std::vector<PsychometricVector>& further_starts,
+                                     double enough) const {
+  constexpr double rough_gain = 1e-6;  // tells the maxima apart; the greatest is climbed to the end
+  constexpr int steps_alone = 5;
+  std::vector<PsychometricVector> all = further_starts;
+  const std::vector<PsychometricVector> of_grid = starts(likelihood);
+  all.insert(all.end(), of_grid.begin(), of_grid.end());
+  Maximum best{all.front(), -std::numeric_limits<double>::infinity()};
+  const auto advance = [&](Climb& climb, int steps) {
+    climb.advance(steps);
+    best = climb.best().log_likelihood > best.log_likelihood ? climb.best() : best;
+    return best.log_likelihood > enough;
+  };
+  std::vector<Climb> apart;
+  for (const PsychometricVector& start : all) {
+    Climb climb{likelihood, box_, start, rough_gain};
+    if (advance(climb, steps_alone)) {
+      return best;
+    }
+    add_if_apart(climb, apart);
+  }
+  for (Climb& climb : apart) {
+    if (advance(climb, max_iterations)) {
+      break;
+    }
+  }
+  return best;
+}
+
+Maximum MaximumSearch::maximum(const BinomialLikelihood& likelihood,
+                               const std::vector<PsychometricVector>& further_starts) const {
+  const Maximum rough =
+      rough_maximum(likelihood, further_starts, std::numeric_limits<double>::infinity());
+  return refined(likelihood, box_, local_maximum(likelihood, box_, rough.at));
+}
+
+bool MaximumSearch::is_exceeded(const BinomialLikelihood& likelihood, double log_likelihood,
+                                const PsychometricVector& start) const {
+  const Maximum rough = rough_maximum(likelihood, {start}, log_likelihood);
+  return rough.log_likelihood > log_likelihood ||
+         refined(likelihood, box_, local_maximum(likelihood, box_, rough.at)).log_likelihood >
+             log_likelihood;
 }
 
 PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vector<Level>& levels) {
@@ -309,7 +423,7 @@ PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vect
   const BinomialLikelihood likelihood = likelihood_of(model, levels);
   const PsychometricBox box = search_box(model, likelihood.levels());
   PsychometricFit fit;
-  fit.maximum = global_maximum(likelihood, box);
+  fit.maximum = MaximumSearch{likelihood, box}.maximum(likelihood);
   fit.outcome = outcome_of(model, likelihood, fit.maximum);
   fit.deviance = likelihood.deviance(fit.maximum.at);
   if (fit.outcome == FitOutcome::fitted) {

@@ -69,7 +69,7 @@ class Profile {
     held.low[place] = held.high[place] = value;
     PsychometricVector of_maximum = maximum_.at;
     of_maximum[place] = value;
-    return global_maximum(likelihood_, held, {of_maximum, last});
+    return MaximumSearch{likelihood_, held}.maximum(likelihood_, {of_maximum, last});
   }
 
   const BinomialLikelihood& likelihood_;
@@ -132,13 +132,15 @@ GoodnessOfFit deviance_test(const PsychometricModel& model, const std::vector<Le
   const std::vector<Level> checked = checked_levels(levels, model.shape);
   const BinomialLikelihood likelihood{model.shape, checked, model.rates};
   const std::vector<double> p = likelihood.proportions(fit.maximum.at);
+  constexpr double rounding = 1e-9;  // answers that fit exactly differ by it
+  const MaximumSearch search{likelihood, search_box(model, checked)};
   core::Rng rng{seed};
   int as_bad = 0;
   for (int draw = 0; draw < draws; ++draw) {
-    // answers that fit exactly differ by rounding
-    const PsychometricFit drawn =
-        fit_psychometric(model, parametric_bootstrap_sample(checked, p, rng));
-    as_bad += drawn.deviance >= fit.deviance - 1e-9 ? 1 : 0;
+    const BinomialLikelihood drawn{model.shape, parametric_bootstrap_sample(checked, p, rng),
+                                   model.rates};
+    const double as_likely = drawn.saturated() - 0.5 * (fit.deviance - rounding);
+    as_bad += search.is_exceeded(drawn, as_likely, fit.maximum.at) ? 0 : 1;
   }
   return {fit.deviance, (1.0 + as_bad) / (draws + 1.0), draws};
 }
@@ -232,20 +234,26 @@ class Grid {
     }
   }
 
-  // The densities lie in the order of the axes, the last one fastest.
+  // The densities lie in the order of the axes, the last one, eta, fastest.
   Marginals summed() const {
-    const double global_maximum = *std::ranges::max_element(log_densities_);
+    const Eigen::Map<const Eigen::ArrayXd> logs{log_densities_.data(),
+                                                static_cast<Eigen::Index>(log_densities_.size())};
+    const double greatest = logs.maxCoeff();
     Marginals marginals;
     for (std::size_t axis = 0; axis < posterior_parameters; ++axis) {
       marginals[axis].assign(axes_[axis].cells, 0.0);
     }
+    const auto etas = static_cast<Eigen::Index>(axes_[eta_at].cells);
+    Eigen::Map<Eigen::ArrayXd> of_eta{marginals[eta_at].data(), etas};
     double total = 0.0;
-    for (std::size_t place = 0; place < log_densities_.size(); ++place) {
-      const double density = std::exp(log_densities_[place] - global_maximum);
-      total += density;
-      std::size_t rest = place;
-      for (std::size_t axis = posterior_parameters; axis-- > 0;) {
-        marginals[axis][rest % axes_[axis].cells] += density;
+    for (Eigen::Index first = 0; first < logs.size(); first += etas) {
+      const Eigen::ArrayXd densities = (logs.segment(first, etas) - greatest).exp();
+      of_eta += densities;
+      const double sum = densities.sum();
+      total += sum;
+      auto rest = static_cast<std::size_t>(first / etas);
+      for (std::size_t axis = eta_at; axis-- > 0;) {
+        marginals[axis][rest % axes_[axis].cells] += sum;
         rest /= axes_[axis].cells;
       }
     }

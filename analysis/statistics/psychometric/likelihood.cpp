@@ -197,7 +197,7 @@ double BinomialLikelihood::value(const PsychometricVector& at) const {
 }
 
 BinomialLikelihood::Slopes BinomialLikelihood::slopes(const PsychometricVector& at) const {
-  Slopes result{PsychometricVector::Zero(), Eigen::Matrix4d::Zero()};
+  Slopes result;
   const double gain = 1.0 - guess(at) - at[lapse_at];
   const double is_separate = rates_ == Rates::separate ? 1.0 : 0.0;
   const double threshold = from_axis(shape_, at[threshold_at]);
@@ -207,7 +207,9 @@ BinomialLikelihood::Slopes BinomialLikelihood::slopes(const PsychometricVector& 
     const PsychometricVector gradient{gain * shape.by_threshold, gain * shape.by_log_slope,
                                       is_separate * (1.0 - shape.value),
                                       (1.0 - is_separate) * (1.0 - shape.value) - shape.value};
-    const double p = std::clamp(guess(at) + gain * shape.value, smallest_p, 1.0 - smallest_p);
+    const double proportion = guess(at) + gain * shape.value;
+    result.log_likelihood += binomial_log_likelihood(level.answers, proportion);
+    const double p = std::clamp(proportion, smallest_p, 1.0 - smallest_p);
     const auto n = static_cast<double>(level.answers.trials);
     const auto k = static_cast<double>(level.answers.successes);
     result.score += (k - n * p) / (p * (1.0 - p)) * gradient;
@@ -216,11 +218,15 @@ BinomialLikelihood::Slopes BinomialLikelihood::slopes(const PsychometricVector& 
   return result;
 }
 
-double BinomialLikelihood::deviance(const PsychometricVector& at) const {
-  double saturated = 0.0;
+double BinomialLikelihood::saturated() const {
+  double sum = 0.0;
   for (const Level& level : levels_) {
-    saturated += binomial_log_likelihood(level.answers, level.answers.value());
+    sum += binomial_log_likelihood(level.answers, level.answers.value());
   }
-  return std::max(0.0, 2.0 * (saturated - value(at)));
+  return sum;
+}
+
+double BinomialLikelihood::deviance(const PsychometricVector& at) const {
+  return std::max(0.0, 2.0 * (saturated() - value(at)));
 }
 }  // namespace tapstudy::analysis

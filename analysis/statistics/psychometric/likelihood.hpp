@@ -48,14 +48,17 @@ class BinomialLikelihood {
                      Rates rates = Rates::separate);
 
   struct Slopes {
-    PsychometricVector score;
-    Eigen::Matrix4d information;
+    double log_likelihood{};  // value(at)
+    PsychometricVector score{PsychometricVector::Zero()};
+    Eigen::Matrix4d information{Eigen::Matrix4d::Zero()};
   };
   double value(const PsychometricVector& at) const;
   Slopes slopes(const PsychometricVector& at) const;
   // F and psi at each level.
   std::vector<double> shape_values(const PsychometricVector& at) const;
   std::vector<double> proportions(const PsychometricVector& at) const;
+  // The log-likelihood of the observed proportions.
+  double saturated() const;
   // 2 (log-likelihood of the observed proportions - value(at)) (Wichmann & Hill 2001a, eq. 5).
   double deviance(const PsychometricVector& at) const;
 

@@ -1,6 +1,7 @@
 #include "analysis/statistics/friedman_test.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -26,7 +27,8 @@ void add_to(Ranks& sums, const Ranks& ranks) {
   std::ranges::transform(sums, ranks, sums.begin(), std::plus{});
 }
 
-double sum_of_squares(const Ranks& sums) {
+template <class Sums>
+double sum_of_squares(const Sums& sums) {
   return std::transform_reduce(sums.begin(), sums.end(), 0.0, std::plus{}, [](int sum) {
     return static_cast<double>(sum) * static_cast<double>(sum);
   });
@@ -42,15 +44,25 @@ std::vector<Ranks> orders_of(Ranks ranks) {
   return orders;
 }
 
+constexpr std::size_t most_conditions = 7;
+using RankSums = std::array<int, most_conditions>;  // 0 beyond the conditions
+
+// Sorted.
+RankSums with(RankSums sums, const Ranks& ranks) {
+  std::ranges::transform(sums, ranks, sums.begin(), std::plus{});
+  const auto end = sums.begin() + std::ssize(ranks);
+  std::partial_sort(sums.begin(), end, end);  // sort: GCC 12 warns of bounds that are kept
+  return sums;
+}
+
 // The probabilities of rank sums, in ascending order: which condition has which does not matter, so
 // that the first participant's order does not either. Unset where there are too many.
-std::optional<std::map<Ranks, double>> distribution_of_sums(const std::vector<Ranks>& people) {
-  constexpr std::size_t most_conditions = 7;
+std::optional<std::map<RankSums, double>> distribution_of_sums(const std::vector<Ranks>& people) {
   constexpr std::size_t most_steps = 400'000;
   if (people.front().size() > most_conditions) {
     return std::nullopt;
   }
-  std::map<Ranks, double> sums{{orders_of(people.front()).front(), 1.0}};
+  std::map<RankSums, double> sums{{with({}, people.front()), 1.0}};
   std::size_t steps = 0;
   for (std::size_t person = 1; person < people.size(); ++person) {
     const std::vector<Ranks> orders = orders_of(people[person]);
@@ -58,13 +70,10 @@ std::optional<std::map<Ranks, double>> distribution_of_sums(const std::vector<Ra
     if (steps > most_steps) {
       return std::nullopt;
     }
-    std::map<Ranks, double> with_person;
+    std::map<RankSums, double> with_person;
     for (const auto& [before, p] : sums) {
       for (const Ranks& order : orders) {
-        Ranks sum = before;
-        add_to(sum, order);
-        std::ranges::sort(sum);
-        with_person[sum] += p / static_cast<double>(orders.size());
+        with_person[with(before, order)] += p / static_cast<double>(orders.size());
       }
     }
     sums = std::move(with_person);

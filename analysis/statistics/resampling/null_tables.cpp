@@ -125,32 +125,42 @@ std::int64_t random_hypergeometric(std::int64_t marked, std::int64_t drawn, std:
                                                  : by_inversion(of, rng);
 }
 
-CountTable random_table(const TableTotals& totals, core::Rng& rng) {
-  CountTable table(totals.rows.size(), std::vector<std::int64_t>(totals.columns.size(), 0));
-  std::vector<std::int64_t> left = totals.columns;  // of each column
+namespace {
+using Counts = std::vector<std::int64_t>;
+
+// left: of each column's total, room that is taken once for many tables.
+void add_random_table(const TableTotals& totals, core::Rng& rng, Counts& left, CountTable& sum) {
+  left = totals.columns;
   std::int64_t all_left = totals.all;
-  for (std::size_t i = 0; i < table.size(); ++i) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
     std::int64_t row_left = totals.rows[i];
     std::int64_t population = all_left;
     for (std::size_t j = 0; j < left.size(); ++j) {
       const std::int64_t cell = random_hypergeometric(left[j], row_left, population, rng);
-      table[i][j] = cell;
+      sum[i][j] += cell;
       population -= left[j];
       row_left -= cell;
       left[j] -= cell;
     }
     all_left -= totals.rows[i];
   }
-  return table;
 }
+}  // namespace
 
 CountTable sum_of_random_tables(const std::vector<TableTotals>& totals, core::Rng& rng) {
-  std::vector<CountTable> tables;
-  tables.reserve(totals.size());
-  for (const TableTotals& of_table : totals) {
-    tables.push_back(random_table(of_table, rng));
+  if (totals.empty()) {
+    throw core::InvalidInput{"a sum of random tables takes one or more"};
   }
-  return sum_of(tables);
+  CountTable sum(totals.front().rows.size(), Counts(totals.front().columns.size(), 0));
+  Counts left;
+  for (const TableTotals& of_table : totals) {
+    add_random_table(of_table, rng, left, sum);
+  }
+  return sum;
+}
+
+CountTable random_table(const TableTotals& totals, core::Rng& rng) {
+  return sum_of_random_tables({totals}, rng);
 }
 
 std::size_t work_of_random_tables(const std::vector<CountTable>& tables) {

@@ -70,8 +70,11 @@ ParticipantSettings participant_of(const AdjustedAxis& axis, const std::string& 
   return person;
 }
 
+using IntervalOfMean = Interval (*)(const std::vector<double>&);
+
 template <class Back>
-std::optional<MeanOfSettings> mean_of(const std::vector<double>& values, Back back) {
+std::optional<MeanOfSettings> mean_of(const std::vector<double>& values, Back back,
+                                      IntervalOfMean interval_of = t_interval) {
   if (values.empty()) {
     return std::nullopt;
   }
@@ -81,7 +84,7 @@ std::optional<MeanOfSettings> mean_of(const std::vector<double>& values, Back ba
   MeanOfSettings result{
       back(mean_and_spread(values).mean), {}, {}, static_cast<int>(values.size())};
   if (values.size() > 1) {
-    result.interval = both(t_interval(values));
+    result.interval = both(interval_of(values));
     if (const auto bootstrap = bootstrap_interval(values, bootstrap_draws, seed)) {
       result.bootstrap = both(*bootstrap);
     }
@@ -115,6 +118,14 @@ Columns columns_of(const AdjustedAxis& axis, const std::vector<ParticipantSettin
   return columns;
 }
 
+// Whether the axis may be taken for one that has nothing below 0.
+bool is_positive(const AdjustedAxis& axis, const std::vector<ParticipantSettings>& people) {
+  const auto is_below_zero = [](const Setting& one) { return one.start < 0.0 || one.value < 0.0; };
+  return !axis.is_logarithmic && std::ranges::none_of(people, [&](const ParticipantSettings& one) {
+    return std::ranges::any_of(one.settings, is_below_zero);
+  });
+}
+
 std::optional<SignFlipTest> test_of(const std::vector<double>& differences) {
   return differences.size() > 1 ? std::optional{sign_flip_test(differences, seed)} : std::nullopt;
 }
@@ -138,9 +149,12 @@ AdjustmentResults adjustment_results(const BlockDesign& design,
   }
   const Columns columns = columns_of(axis, results.participants);
   const auto back = [&](double value) { return from_scale(axis, value); };
-  results.equality = mean_of(columns.means, back);
+  results.equality =
+      mean_of(columns.means, back,
+              is_positive(axis, results.participants) ? positive_interval : t_interval);
   results.error = mean_of(columns.errors, back);
-  results.deviation = mean_of(columns.deviations, [](double value) { return value; });
+  results.deviation = mean_of(
+      columns.deviations, [](double value) { return value; }, positive_interval);
   results.hysteresis = mean_of(columns.differences, back);
   if (design.premise.empty()) {
     results.error_test = test_of(columns.errors);
@@ -172,12 +186,12 @@ std::vector<Estimate> estimates_of(const AdjustedAxis& axis, const AdjustmentRes
 }
 
 ReportTable estimates_table(const AdjustedAxis& axis, const AdjustmentResults& results) {
-  ReportTable table{"over_participants",
-                    "Over participants",
-                    {column("estimate", "estimate"), column("in", "unit"),
-                     interval_column("mean (95 % CI by t)", "mean"),
-                     interval_column("by bootstrap", "bootstrap_mean"),
-                     column("participants", "participants"), column("p", "p")}};
+  ReportTable table{
+      "over_participants",
+      "Over participants",
+      {column("estimate", "estimate"), column("in", "unit"),
+       interval_column("mean (95 % CI)", "mean"), interval_column("by bootstrap", "bootstrap_mean"),
+       column("participants", "participants"), column("p", "p")}};
   for (const Estimate& row : estimates_of(axis, results)) {
     if (!row.of) {
       continue;
@@ -230,7 +244,8 @@ std::vector<CitingText> remarks_on(const BlockDesign& design, const AdjustmentRe
   }
   const AdjustedAxis& axis = *design.adjusted;
   std::vector<CitingText> remarks{fmt::format(
-      "Each participant counts as the {} of the settings; intervals over participants{}. The "
+      "Each participant counts as the {} of the settings; intervals over participants{}, by t; of "
+      "what is never below 0 up to the score with a variance in proportion to the mean. The "
       "standard deviation of a participant's settings estimates the difference threshold{}.",
       axis.is_logarithmic ? "geometric mean" : "mean",
       axis.is_logarithmic ? ", whose means are geometric too" : "",

@@ -30,7 +30,9 @@ struct ParticipantSettings {
 
 struct MeanOfSettings {
   double mean{};
-  std::optional<Interval> interval;  // 95 %, by t over participants; unset for fewer than two
+  // 95 % over participants, by t or, of what is not below 0, positive_interval; unset for fewer
+  // than two
+  std::optional<Interval> interval;
   std::optional<Interval>
       bootstrap;  // 95 %, by bootstrap_interval; unset likewise, and of equal values
   int participants{};

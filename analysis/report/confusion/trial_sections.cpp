@@ -14,6 +14,12 @@ namespace {
 constexpr std::uint64_t learning_seed = 6;
 constexpr std::uint64_t serial_seed = 7;
 
+// Of times, speeds and numbers, one a participant.
+Cell mean_of_positive(const std::vector<double>& values) {
+  return interval(mean_and_spread(values).mean,
+                  values.size() > 1 ? std::optional{positive_interval(values)} : std::nullopt);
+}
+
 // Least squares of right answers on presentations; unset for one presentation.
 std::optional<double> slope_of(const IdentifyingParticipant& person) {
   const auto n = static_cast<double>(person.trials.size());
@@ -166,7 +172,7 @@ void add_times(const IdentificationData& data, const std::string& what, const st
   }
   const Quartiles quarters = quartiles(all);
   table.rows.push_back({word(what), word(from), count(static_cast<std::int64_t>(all.size())),
-                        mean_with_interval(medians), number(quarters.low), number(quarters.median),
+                        mean_of_positive(medians), number(quarters.low), number(quarters.median),
                         number(quarters.high)});
 }
 
@@ -174,7 +180,7 @@ ReportTable times_table(const IdentificationData& data) {
   ReportTable table{"response_times",
                     "Response times in seconds",
                     {column("answers", "answers"), column("from", "from"), column("n", "n"),
-                     interval_column("mean of participants' medians (95 % CI, t)", "mean_median_s"),
+                     interval_column("mean of participants' medians (95 % CI)", "mean_median_s"),
                      column("lower quartile", "quartile_low_s"), column("median", "median_s"),
                      column("upper quartile", "quartile_high_s")}};
   const std::vector<std::pair<std::string, Counts>> subsets{
@@ -329,7 +335,7 @@ Cell mean_cell(const IdentificationData& data, std::optional<std::size_t> stimul
   if (means.empty()) {
     return {"–", {Value{}, Value{}, Value{}}};
   }
-  return mean_with_interval(means);
+  return mean_of_positive(means);
 }
 
 std::vector<Cell> row_of(const IdentificationData& data, const std::string& name,
@@ -349,7 +355,7 @@ std::vector<Cell> row_of(const IdentificationData& data, const std::string& name
 ReportSection exploration_section(const IdentificationData& data) {
   ReportSection section{"What the participants did"};
   ReportTable table{"exploration",
-                    "In a trial, means over participants (95 % CI, t)",
+                    "In a trial, means over participants (95 % CI)",
                     {column("presented", "stimulus"), interval_column("impacts", "impacts"),
                      interval_column("their speed, m/s", "speed_m_s"),
                      interval_column("time in contact, s", "contact_s")}};

@@ -14,13 +14,13 @@ namespace {
 constexpr double half = 0.5;
 
 Cell mean_cell(const std::vector<double>& values) {
-  return interval(mean_and_spread(values).mean, t_interval(values));
+  return interval(mean_and_spread(values).mean, positive_interval(values));
 }
 }  // namespace
 
 ReportTable participants_taps_table(const std::map<std::string, TapsOfParticipant>& participants) {
   ReportTable table{"rendered_participants",
-                    "Taps of the participants: medians; means over participants (95 % CI, t)",
+                    "Taps of the participants: medians; means over participants (95 % CI)",
                     {column("participant", "participant_id"), column("taps", "taps"),
                      interval_column("speed at impact, m/s", "speed_m_s"),
                      interval_column("peak of the commanded force, N", "peak_n"),

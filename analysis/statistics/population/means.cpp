@@ -148,6 +148,17 @@ Interval t_interval(const std::vector<double>& values) {
   return {spread.mean - reach, spread.mean + reach};
 }
 
+Interval positive_interval(const std::vector<double>& values) {
+  const Interval by_t = t_interval(values);
+  if (std::ranges::any_of(values, [](double value) { return value < 0.0; })) {
+    return by_t;
+  }
+  const double mean = 0.5 * (by_t.low + by_t.high);
+  const double reach = by_t.high - mean;
+  const double e = mean > 0.0 ? reach * reach / mean : 0.0;
+  return {std::max(0.0, by_t.low), mean + 0.5 * e + std::sqrt(e * mean + 0.25 * e * e)};
+}
+
 std::optional<Interval> bca_interval(const std::vector<double>& values, int draws,
                                      std::uint64_t seed, double tail) {
   check_values(values);
@@ -219,10 +230,10 @@ Interval score_interval(double mean, double dispersion, double n) {
 }
 
 // How much the likelihood has to say of how people differ: nothing of means that are not near an
-// end of the scale, half at the end.
+// end of the scale, somewhat more than the spread at the end.
 double weight_of_likelihood(double mean) {
-  constexpr double first = 0.75;  // of the way from 1/2 to the end
-  return 0.5 * std::clamp((std::abs(2.0 * mean - 1.0) - first) / (1.0 - first), 0.0, 1.0);
+  constexpr double first = 0.5;  // of the way from 1/2 to the end
+  return 0.6 * std::clamp((std::abs(2.0 * mean - 1.0) - first) / (1.0 - first), 0.0, 1.0);
 }
 
 // The variance of the mean of shares, in proportion to mean (1 - mean) / people, of the likeliest

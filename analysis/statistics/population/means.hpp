@@ -31,11 +31,11 @@ struct MeanShare {
   // least share_of_binomial of what independent answers give, mean(1 / trials), because shares are
   // discrete and may agree by chance; where fewer than two answers are right, or wrong, it is all
   // of that. Near an end of the scale the few who are far from the others are easily not in the
-  // sample, and s^2 is too small: for means beyond .875 (or below .125) t^2 phi is there the larger
+  // sample, and s^2 is too small: for means beyond .75 (or below .25) t^2 phi is there the larger
   // of itself and its weighted geometric mean with
   //   n ln(1 + t^2 / (n - 1)) phi(m),
   // phi(m) by the likeliest intra-class correlation of a beta-binomial distribution of mean m; the
-  // weight grows from 0 to 1/2 at the end. The cut is that of a profile likelihood (see
+  // weight grows from 0 to .6 at the end. The cut is that of a profile likelihood (see
   // censored_contrast). It lies within [0, 1]. Unset for two participants: their interval is as
   // good as [0, 1].
   std::optional<Interval> interval;
@@ -79,6 +79,14 @@ std::optional<Interval> bootstrap_interval(const std::vector<double>& values, in
 
 // mean +- t s / sqrt n, 95 %. Throws InvalidInput for fewer than two finite values.
 Interval t_interval(const std::vector<double>& values);
+
+// The 95 % interval of the mean of values that are not below 0, of which few may be much larger
+// than the others (times, speeds, forces, deviations): t's lower end, but not below 0, and the
+// upper end m of the score with a variance in proportion to the mean (Wedderburn 1974),
+//   (mean - m)^2 = t^2 s^2 / n m / mean,
+// because the large ones are easily not in the sample, which makes mean and s too small together.
+// t's interval where a value is below 0. Throws InvalidInput as t_interval.
+Interval positive_interval(const std::vector<double>& values);
 
 // A difference between two conditions, one value a participant (NaN and infinity are refused).
 struct PairedContrast {

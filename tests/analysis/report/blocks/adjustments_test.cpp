@@ -69,7 +69,7 @@ void check_mean(const nlohmann::ordered_json& row, const std::vector<double>& r,
 }
 }  // namespace
 
-TEST_CASE("equality, constant error, deviation and lag of settings are R's, with its t intervals",
+TEST_CASE("equality, constant error, deviation and lag of settings are R's, with their intervals",
           "[analysis][adjustments]") {
   const bool is_logarithmic = GENERATE(false, true);
   const auto answers = settings(1.4);
@@ -78,7 +78,12 @@ TEST_CASE("equality, constant error, deviation and lag of settings are R's, with
       (is_logarithmic ? "f <- log; g <- exp; " : "f <- identity; g <- identity; ") +
       "y <- f(x); m <- rowMeans(y); s <- apply(y, 1, sd); d <- rowMeans(y[, c(1, 3, 5)]) - "
       "rowMeans(y[, c(2, 4, 6)]); ci <- function(v, g) c(g(mean(v)), g(t.test(v)$conf.int)); "
-      "out(ci(m, g), ci(m - f(3), g), ci(s, identity), ci(d, g), g(m[1]), s[1], g(m[1] - f(3)), "
+      // of what is not below 0 the upper end is that of a variance in proportion to the mean
+      "up <- function(v) { b <- mean(v); c(b, t.test(v)$conf.int[1], uniroot(function(a) (b - a)^2 "
+      "- qt(.975, length(v) - 1)^2 * var(v) / length(v) * a / b, c(b, 1e3), tol = 1e-12)$root) }; "
+      "out(" +
+      (is_logarithmic ? "ci(m, g)" : "up(m)") +
+      ", ci(m - f(3), g), up(s), ci(d, g), g(m[1]), s[1], g(m[1] - f(3)), "
       "g(mean(y[1, c(1, 3, 5)])))");
   const auto json = reported(statistic, design_of(is_logarithmic), answers).json;
   for (std::size_t row = 0; row < 4; ++row) {

@@ -248,8 +248,9 @@ TEST_CASE("contrasts, learning and medians are those that R computes from the an
       "d <- s[, 1] - s[, 2]; f <- function(d) { s <- as.matrix(expand.grid(rep(list(c(-1, 1)), "
       "length(d)))); mean(abs(s %*% d) >= abs(sum(d)) - 1e-9) };"
       "b <- sapply(split(data.frame(k, r), p), function(x) coef(lm(k ~ r, x))[2]);"
-      "out(mean(d), t.test(d)$conf.int, f(d), mean(b), f(b), mean(tapply(t, p, median)), "
-      "quantile(t, .25))");
+      "v <- tapply(t, p, median); u <- uniroot(function(a) (mean(v) - a)^2 - qt(.975, length(v) - "
+      "1)^2 * var(v) / length(v) * a / mean(v), c(mean(v), 1e3), tol = 1e-13)$root;"
+      "out(mean(d), t.test(d)$conf.int, f(d), mean(b), f(b), mean(v), quantile(t, .25), u)");
   const auto& contrast = json["contrasts"][0];
   CHECK(contrast["of"] == "material");
   CHECK(contrast["difference"].get<double>() == Approx(r[0]).margin(1e-12));
@@ -259,6 +260,8 @@ TEST_CASE("contrasts, learning and medians are those that R computes from the an
   CHECK(json["learning"][0]["change"].get<double>() == Approx(r[4]).margin(1e-12));
   CHECK(json["learning"][0]["p"].get<double>() == Approx(r[5]).epsilon(1e-9));
   CHECK(json["response_times"][0]["mean_median_s"].get<double>() == Approx(r[6]).epsilon(1e-9));
+  CHECK(json["response_times"][0]["mean_median_s_high"].get<double>() ==
+        Approx(r[8]).epsilon(1e-8));
   CHECK(json["response_times"][0]["quartile_low_s"].get<double>() == Approx(r[7]).epsilon(1e-9));
 }
 

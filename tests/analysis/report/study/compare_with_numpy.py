@@ -13,7 +13,7 @@ import sys
 
 import numpy as np
 import yaml
-from scipy import stats
+from scipy import optimize, stats
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../../../../results"))
 sys.dont_write_bytecode = True
@@ -105,8 +105,12 @@ def check_participants(said, by_participant):
         close(row["contact_s"], np.mean([tap["touching"].sum() / 1000 for tap in taps]), "contact_s")
     peaks = [row["peak_n"] for row in people]
     half = stats.t.ppf(0.975, len(peaks) - 1) * stats.sem(peaks)
+    middle = np.mean(peaks)
+    # the upper end is that of the score with a variance in proportion to the mean
+    high = optimize.brentq(lambda end: (end - middle) ** 2 - half**2 * end / middle, middle,
+                           1e3 * middle, xtol=1e-14)
     close([mean["peak_n_low"], mean["peak_n"], mean["peak_n_high"]],
-          [np.mean(peaks) - half, np.mean(peaks), np.mean(peaks) + half], "mean peak_n")
+          [max(0.0, middle - half), middle, high], "mean peak_n")
 
 
 def check_stimuli(said, by_stimulus):

@@ -55,7 +55,7 @@ TEST_CASE("participants' distribution is that of R's beta-binomial likelihood",
 TEST_CASE("the interval over participants is where R's score of the mean is that of t",
           "[analysis][participants]") {
   for (const std::vector<Proportion>& of :
-       {people, {{3, 6}, {25, 30}, {28, 30}, {30, 30}}, {{14, 16}, {15, 16}, {13, 16}}}) {
+       {people, {{1, 6}, {15, 30}, {28, 30}, {30, 30}}, {{11, 16}, {12, 16}, {12, 16}}}) {
     const auto r = r_numbers(
         r_counts(of) +
         "p <- k / t; n <- length(p); b <- mean(p); phi <- max(var(p) / (b * (1 - b)), .05 * "
@@ -70,9 +70,11 @@ TEST_CASE("the interval over participants is where R's score of the mean is that
   }
 }
 
-TEST_CASE("near an end the interval is where R's likelihood and the spread say half each",
+TEST_CASE("near an end the interval is where R's likelihood and the spread say",
           "[analysis][participants]") {
-  const std::vector<Proportion> near_end{{16, 16}, {30, 30}, {14, 16}, {6, 6}, {15, 16}, {16, 16}};
+  const std::vector<Proportion> near_end =
+      GENERATE(std::vector<Proportion>{{16, 16}, {30, 30}, {14, 16}, {6, 6}, {15, 16}, {16, 16}},
+               std::vector<Proportion>{{3, 6}, {25, 30}, {28, 30}, {30, 30}});
   const auto r = r_numbers(
       r_counts(near_end) +
       "p <- k / t; n <- length(p); b <- mean(p); q <- qt(.975, n - 1)^2;"
@@ -81,7 +83,7 @@ TEST_CASE("near an end the interval is where R's likelihood and the spread say h
       "lbeta(v * m, v * (1 - m))) };"
       "phi <- function(m) { e <- optimize(function(e) l(m, e), c(1e-3, .999), maximum = TRUE, tol "
       "= 1e-9)$maximum; mean((1 + (t - 1) * e^2) / t) };"
-      "w <- .5 * min(1, max(0, (abs(2 * b - 1) - .75) / .25));"
+      "w <- .6 * min(1, max(0, (abs(2 * b - 1) - .5) / .5));"
       "e <- function(m) (b - m)^2 - max(shown, shown^(1 - w) * (n * log(1 + q / (n - 1)) * "
       "phi(m))^w) * m * (1 - m) / n;"
       "out(uniroot(e, c(1e-6, b), tol = 1e-12)$root, uniroot(e, c(b, 1 - 1e-9), tol = "
@@ -384,6 +386,23 @@ TEST_CASE("differences of which some are ranges have R's normal likelihood",
   CHECK(found.interval->low == Approx(r[1]).epsilon(1e-3));
   CHECK(found.interval->high == Approx(r[2]).epsilon(1e-3));
   CHECK(found.participants == 8);
+}
+
+TEST_CASE("of values above 0 the interval ends where R's score with a variance like the mean does",
+          "[analysis][participants]") {
+  const auto r = r_numbers(
+      "x <- c(.4, .9, .5, 3.1, .7); y <- c(.1, .2, 5); u <- function(x) { n <- length(x); m <- "
+      "mean(x); uniroot(function(a) (m - a)^2 - qt(.975, n - 1)^2 * var(x) / n * a / m, c(m, 1e3), "
+      "tol = 1e-12)$root }; out(t.test(x)$conf.int[1], u(x), u(y))");
+  const Interval found = positive_interval({0.4, 0.9, 0.5, 3.1, 0.7});
+  CHECK(found.low == std::max(0.0, t_interval({0.4, 0.9, 0.5, 3.1, 0.7}).low));
+  CHECK(r[0] < 0.0);
+  CHECK(found.high == Approx(r[1]).epsilon(1e-9));
+  CHECK(positive_interval({0.1, 0.2, 5.0}).high == Approx(r[2]).epsilon(1e-9));
+  CHECK(positive_interval({10.0, 11.0, 12.0}).low == t_interval({10.0, 11.0, 12.0}).low);
+  CHECK(positive_interval({-0.1, 0.2, 5.0}).high == t_interval({-0.1, 0.2, 5.0}).high);
+  CHECK(positive_interval({0.0, 0.0}).high == 0.0);
+  CHECK_THROWS_AS(positive_interval({1.0}), core::InvalidInput);
 }
 
 TEST_CASE("the mean of a bounded scale stays within its bounds", "[analysis][participants]") {

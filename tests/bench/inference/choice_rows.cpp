@@ -3,6 +3,7 @@
 #include <functional>
 #include <numeric>
 
+#include "analysis/report/blocks/choices.hpp"
 #include "analysis/statistics/friedman_test.hpp"
 #include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/proportion.hpp"
@@ -26,6 +27,12 @@ std::optional<Outcome> declared_choice(const StudyDraw& draw) {
 
 std::optional<Outcome> all_alike(const StudyDraw& draw) {
   return Outcome{analysis::exact_multinomial_p(votes_of(1.0 / 3.0, draw)).value()};
+}
+
+// What was visited first is chosen as often as any of three, in four trials each.
+std::optional<Outcome> first_visited(const StudyDraw& draw) {
+  const auto chosen = answered(1.0 / 3.0, 4 * draw.people, draw.rng);
+  return Outcome{analysis::binomial_two_sided_p(chosen, 1.0 / 3.0)};
 }
 
 std::optional<Outcome> share_chosen(const StudyDraw& draw) {
@@ -151,6 +158,7 @@ std::vector<Row> rows_of_choices() {
   return {
       {size, "choice", "a declared alternative", By::people, declared_choice},
       {size, "choice", "all alike", By::people, all_alike},
+      {size, "choice", "what was visited first, 4 N trials", By::people, first_visited},
       {coverage, "choice", "a share of 1/2 (Wilson)", By::people, share_chosen},
       {coverage, "choice", "three shares at once (Goodman)", By::people, shares_at_once},
       {size, "ranking", "Friedman", By::people,

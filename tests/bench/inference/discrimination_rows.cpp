@@ -95,6 +95,35 @@ std::optional<Outcome> sensitivity_by_rates(const StudyDraw& draw) {
   return holds(analysis::yes_no_sensitivity(hits, false_alarms).d_prime_interval, d_prime);
 }
 
+std::optional<Outcome> criterion_by_rates(const StudyDraw& draw) {
+  constexpr double z[]{0.5, -0.9};
+  const auto cdf = [](double at) { return 0.5 * std::erfc(-at / std::sqrt(2.0)); };
+  const auto hits = answered(cdf(z[0]), 10 * draw.people, draw.rng);
+  const auto false_alarms = answered(cdf(z[1]), 10 * draw.people, draw.rng);
+  return holds(analysis::yes_no_sensitivity(hits, false_alarms).criterion_interval,
+               -0.5 * (z[0] + z[1]));
+}
+
+// One person's d' = 2 by pairs that differ and pairs that are alike.
+std::optional<Outcome> sensitivity_by_pairs(const StudyDraw& draw, bool is_differencing) {
+  constexpr double d_prime = 2.0;
+  constexpr double false_rate = 0.25;
+  const auto false_alarms = answered(false_rate, 10 * draw.people, draw.rng);
+  if (is_differencing) {
+    const double hit_rate = analysis::same_different_hit_rate(d_prime, false_rate);
+    const auto interval = analysis::same_different_differencing_interval(
+        answered(hit_rate, 10 * draw.people, draw.rng), false_alarms);
+    return interval ? std::optional{holds(*interval, d_prime)} : std::nullopt;
+  }
+  // unbiased: as many right answers of pairs that differ as of those that are alike
+  const double right = analysis::proportion_correct(
+      {analysis::DecisionModel::same_different_independent_observation, 2}, d_prime);
+  const auto interval = analysis::same_different_independent_interval(
+      answered(right, 10 * draw.people, draw.rng),
+      answered(1.0 - right, 10 * draw.people, draw.rng));
+  return interval ? std::optional{holds(*interval, d_prime)} : std::nullopt;
+}
+
 std::optional<Outcome> share_of_one(const StudyDraw& draw) {
   return holds(analysis::wilson_interval(answered(0.8, 10 * draw.people, draw.rng)), 0.8);
 }
@@ -112,6 +141,13 @@ std::vector<Row> rows_of_discrimination() {
        share_of_one},
       {Kind::coverage, "same_different", "one participant's d' by rates, 10 N trials of each kind",
        By::people, sensitivity_by_rates},
+      {Kind::coverage, "same_different", "one participant's criterion by rates, likewise",
+       By::people, criterion_by_rates},
+      {Kind::coverage, "same_different", "one participant's d' by differencing, likewise",
+       By::people, [](const StudyDraw& draw) { return sensitivity_by_pairs(draw, true); }},
+      {Kind::coverage, "same_different",
+       "one participant's d' by independent observations, likewise", By::people,
+       [](const StudyDraw& draw) { return sensitivity_by_pairs(draw, false); }},
   };
 }
 }  // namespace tapstudy::bench

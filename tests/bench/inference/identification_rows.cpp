@@ -105,29 +105,104 @@ std::optional<Outcome> accuracy(const BlockDesign& design, const IdentificationD
 
 std::optional<Outcome> information(const BlockDesign& design, const IdentificationData& data,
                                    core::Rng& rng) {
-  return Outcome{guessed_information(*randomisation_of(design, data).tables, 199, rng(), 1).p};
+  return Outcome{
+      guessed_information(*randomisation_of(design, data).tables, draws_of_a_test, rng(), 1).p};
 }
 
 std::optional<Outcome> dependence(const BlockDesign& design, const IdentificationData& data,
                                   core::Rng& rng) {
   const auto tables = randomisation_of(design, data).tables;
-  return Outcome{monte_carlo_independence(*tables, 199, rng(), 1).p};
+  return Outcome{monte_carlo_independence(*tables, draws_of_a_test, rng(), 1).p};
+}
+
+std::optional<Outcome> agreement_in_factor(const BlockDesign& design,
+                                           const IdentificationData& data, core::Rng& rng) {
+  const analysis::ConfusionMatrix items{design.stimuli, design.responses};
+  const auto tests = chance_tests(randomisation_of(design, data), items, {"material"},
+                                  analysis::Draws{draws_of_a_test, rng()});
+  return Outcome{tests.factors.at(0).p};
+}
+
+// All answers for those of one participant.
+std::optional<Outcome> accuracy_of_one(const BlockDesign& design, const IdentificationData& data,
+                                       core::Rng& /*rng*/) {
+  analysis::ConfusionMatrix of_one{design.stimuli, design.responses};
+  for (const auto& person : data.participants) {
+    for (const auto& trial : person.trials) {
+      ++of_one.counts[trial.stimulus][trial.response];
+    }
+  }
+  return Outcome{chance_p_of(of_one)};
+}
+
+// Of each participant how much the share right at one level of the first factor exceeds that at the
+// other, less what preferences give: what the contrast's signs are exchanged of.
+double beyond_preference(const analysis::IdentifyingParticipant& person,
+                         const analysis::Grouping& grouping) {
+  std::vector<double> named(stimuli, 0.0);
+  for (const auto& trial : person.trials) {
+    named[trial.response] += 1.0 / static_cast<double>(person.trials.size());
+  }
+  double sums[2]{0.0, 0.0};
+  int trials[2]{0, 0};
+  for (const auto& trial : person.trials) {
+    const std::size_t level = grouping.level_of(trial);
+    sums[level] += (trial.is_right ? 1.0 : 0.0) - named[trial.stimulus];
+    ++trials[level];
+  }
+  return sums[0] / trials[0] - sums[1] / trials[1];
 }
 
 std::optional<Outcome> contrast(const BlockDesign& /*design*/, const IdentificationData& data,
-                                core::Rng& /*rng*/) {
+                                core::Rng& rng) {
   const analysis::ReportSection section = contrasts_section(data);
-  return Outcome{std::get<double>(section.tables.at(0).rows.at(0).at(5).values.at(0))};
+  const analysis::Grouping grouping = groupings_of_stimuli(data).at(0);
+  std::vector<double> differences;
+  for (const auto& person : data.participants) {
+    differences.push_back(beyond_preference(person, grouping));
+  }
+  return Outcome{std::get<double>(section.tables.at(0).rows.at(0).at(5).values.at(0)),
+                 share_further_by_signs(differences, rng)};
+}
+
+// In proportion to the least squares slope of right answers on presentations 1 to 4.
+double slope_over_presentations(const analysis::IdentifyingParticipant& person) {
+  double slope = 0.0;
+  for (const auto& trial : person.trials) {
+    slope += trial.is_right ? trial.repetition - 0.5 * (trials_of_each + 1) : 0.0;
+  }
+  return slope;
 }
 
 std::optional<Outcome> learning(const BlockDesign& /*design*/, const IdentificationData& data,
-                                core::Rng& /*rng*/) {
-  return Outcome{analysis::learning_of(data).value().p};
+                                core::Rng& rng) {
+  std::vector<double> slopes;
+  for (const auto& person : data.participants) {
+    slopes.push_back(slope_over_presentations(person));
+  }
+  return Outcome{analysis::learning_of(data).value().p, share_further_by_signs(slopes, rng)};
+}
+
+// How much more often a class is named than presented.
+std::optional<Outcome> naming(const BlockDesign& /*design*/, const IdentificationData& data,
+                              core::Rng& rng) {
+  std::vector<double> differences;
+  for (const auto& person : data.participants) {
+    const analysis::TableTotals totals = analysis::totals_of(counts_of(data, person));
+    differences.push_back(static_cast<double>(totals.columns[0] - totals.rows[0]));
+  }
+  return sign_flips_of(differences, rng);
 }
 
 std::optional<Outcome> previous_trial(const BlockDesign& /*design*/, const IdentificationData& data,
                                       core::Rng& rng) {
-  return Outcome{serial_dependence(sequences_of(data), 199, rng(), 1).last_right.p};
+  return Outcome{serial_dependence(sequences_of(data), draws_of_a_test, rng(), 1).last_right.p};
+}
+
+std::optional<Outcome> repeated_answer(const BlockDesign& /*design*/,
+                                       const IdentificationData& data, core::Rng& rng) {
+  return Outcome{
+      serial_dependence(sequences_of(data), draws_of_a_test, rng(), 1).repeated_answer.p};
 }
 
 // Of people who are right in half of the trials on average.
@@ -157,6 +232,9 @@ std::vector<Row> rows_of_identification() {
       of_guessers("the same, no stimulus three times running", true, By::guessers, accuracy),
       of_guessers("the same, some stop half way", false, By::guessers, accuracy,
                   Attendance::some_stop),
+      of_guessers("one participant's right answers, 16 N trials", false, By::guessers,
+                  accuracy_of_one),
+      of_guessers("agreement in a factor", false, By::guessers, agreement_in_factor),
       of_guessers("answers depend on stimuli", false, By::guessers, dependence),
       of_guessers("information against guesses", false, By::guessers, information),
       of_guessers("contrast of a factor", false, By::guessers, contrast),
@@ -164,6 +242,8 @@ std::vector<Row> rows_of_identification() {
                   Attendance::some_stop),
       of_guessers("learning", false, By::guessers, learning),
       of_guessers("effect of the trial before", false, By::people, previous_trial),
+      of_guessers("answer of the trial before", false, By::people, repeated_answer),
+      of_guessers("a class named more often than presented", false, By::people, naming),
       {Kind::coverage, "identification", "information, participants' shares right differ",
        By::people, [design](const StudyDraw& draw) { return transferred(*design, draw); }},
   };

@@ -1,12 +1,12 @@
-// inference_bench [STUDIES [TRACKS [WORD]]]: how often tests of people who feel nothing give
+// inference_bench [STUDIES [SECONDS [WORD]]]: how often tests of people who feel nothing give
 // p <= .05, how often 95 % intervals hold the truth where people differ, and how long those of
-// shares are in proportion to t's, as a table in Markdown. Each cell is of STUDIES studies (2000),
-// where each takes a posterior of its own of TRACKS (2000). With WORD only lines that hold it. Of
-// three numbers in a cell those of tests are of indifferent, habitual and reluctant guessers, those
-// of intervals of intra-class correlations 0, .1 and .3. "!" marks sizes outside .03 to .07,
-// coverages outside .93 to .97 and lengths above 1.15, "°" sizes below .03 that discrete answers
-// leave no better choice; in parentheses the share of studies without a result. What a line took of
-// the processors' time is told beside the table.
+// shares are in proportion to t's, as a table in Markdown. A cell is of STUDIES studies (2000), or
+// of fewer, which are told, where a line has taken SECONDS of the processors' time (20). With WORD
+// only lines that hold it. Of three numbers in a cell those of tests are of indifferent, habitual
+// and reluctant guessers, those of intervals of intra-class correlations 0, .1 and .3. "!" marks
+// sizes outside .03 to .07, coverages outside .93 to .97 and lengths above 1.15, "°" sizes below
+// .03 that discrete answers leave no better choice; in parentheses the share of studies without a
+// result. What a line took of the processors' time is told beside the table.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <iterator>
+#include <limits>
 
 #include "analysis/statistics/resampling/replicates.hpp"
 #include "core/error.hpp"
@@ -103,68 +104,81 @@ void add_study(const Row& row, const StudyDraw& draw, Cell& cell) {
   }
 }
 
-// The cells of a row. Studies are drawn in parts of their own seeds, for cells of many participants
+double seconds_of_processors() {
+  constexpr double per_second = CLOCKS_PER_SEC;
+  return static_cast<double>(std::clock()) / per_second;
+}
+
+struct Limits {
+  int studies{};
+  double seconds{};  // of a line, beside its first round
+};
+
+// The cells of a row. Rounds are of parts that have their own seeds, for cells of many participants
 // take as long as all others.
-std::vector<Cell> cells_of(const Row& row, int studies, std::uint64_t seed) {
+std::vector<Cell> cells_of(const Row& row, const Limits& limits, std::uint64_t seed) {
+  constexpr int in_a_part = 5;
+  constexpr std::size_t parts_in_a_round = 4;
   const std::size_t kinds = row.by == By::people ? 1 : 3;
-  constexpr int in_a_part = 50;
-  const auto parts = static_cast<std::size_t>((studies + in_a_part - 1) / in_a_part);
-  std::vector<Cell> found(numbers.size() * kinds * parts);
-  tapstudy::analysis::parallel_for(found.size(), 0, [&](std::size_t i) {
-    const std::size_t cell = i / parts;
-    Rng rng{1'000'000 * seed + i};
-    StudyDraw draw{numbers[cell / kinds], rng};
-    if (row.by == By::guessers) {
-      draw.guesser = guessers[cell % kinds];
-    } else if (row.by == By::correlations) {
-      draw.intraclass_correlation = correlations[cell % kinds];
-    }
-    const int done = static_cast<int>(i % parts) * in_a_part;
-    for (int study = done; study < std::min(studies, done + in_a_part); ++study) {
-      add_study(row, draw, found[i]);
-    }
-  });
   std::vector<Cell> cells(numbers.size() * kinds);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    Cell& cell = cells[i / parts];
-    cell.studies += found[i].studies;
-    std::ranges::copy(found[i].outcomes, std::back_inserter(cell.outcomes));
+  std::uint64_t part = 0;
+  double end = std::numeric_limits<double>::infinity();
+  while (cells.front().studies < limits.studies && seconds_of_processors() < end) {
+    std::vector<Cell> found(cells.size() * parts_in_a_round);
+    tapstudy::analysis::parallel_for(found.size(), 0, [&](std::size_t i) {
+      const std::size_t cell = i / parts_in_a_round;
+      Rng rng{1'000'000 * seed + part + i};
+      StudyDraw draw{numbers[cell / kinds], rng};
+      if (row.by == By::guessers) {
+        draw.guesser = guessers[cell % kinds];
+      } else if (row.by == By::correlations) {
+        draw.intraclass_correlation = correlations[cell % kinds];
+      }
+      for (int study = 0; study < in_a_part; ++study) {
+        add_study(row, draw, found[i]);
+      }
+    });
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      Cell& cell = cells[i / parts_in_a_round];
+      cell.studies += found[i].studies;
+      std::ranges::copy(found[i].outcomes, std::back_inserter(cell.outcomes));
+    }
+    end = part == 0 ? seconds_of_processors() + limits.seconds : end;
+    part += found.size();
   }
   return cells;
 }
 
-void print(const Row& row, int studies, std::uint64_t seed) {
-  const auto begin = std::clock();
-  const std::vector<Cell> cells = cells_of(row, studies, seed);
+void print(const Row& row, const Limits& limits, std::uint64_t seed) {
+  const double begin = seconds_of_processors();
+  const std::vector<Cell> cells = cells_of(row, limits, seed);
   std::vector<std::string> words;
   std::ranges::transform(cells, std::back_inserter(words),
                          [&](const Cell& cell) { return words_of(row, cell); });
-  fmt::print("| {} | {}, {} |", row.task, name_of(row.kind), row.statistic);
+  fmt::print("| {} | {}, {} | {} |", row.task, name_of(row.kind), row.statistic,
+             cells.front().studies);
   const auto in_a_column = static_cast<std::ptrdiff_t>(words.size() / numbers.size());
   for (auto first = words.begin(); first != words.end(); first += in_a_column) {
     fmt::print(" {} |", fmt::join(first, first + in_a_column, " "));
   }
   fmt::print("\n");
   std::fflush(stdout);
-  constexpr double per_second = CLOCKS_PER_SEC;
-  fmt::print(stderr, "{:.1f} s of processors\n",
-             static_cast<double>(std::clock() - begin) / per_second);
+  fmt::print(stderr, "{:.1f} s of processors\n", seconds_of_processors() - begin);
 }
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int studies = argc > 1 ? std::atoi(argv[1]) : 2000;
-  const int tracks = argc > 2 ? std::atoi(argv[2]) : 2000;
+  const Limits limits{argc > 1 ? std::atoi(argv[1]) : 2000, argc > 2 ? std::atof(argv[2]) : 20.0};
   const std::string word = argc > 3 ? argv[3] : "";
-  fmt::print("| task | {} studies a cell, {} where thresholds are fitted | N = 3 | 5 | 8 | 20 |\n",
-             studies, tracks);
-  fmt::print("|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| task | statistic | studies | N = 3 | 5 | 8 | 20 |\n|---|---|---|---|---|---|---|\n");
   std::uint64_t seed = 1;
-  for (const auto rows : {rows_of_discrimination, rows_of_identification, rows_of_choices,
-                          rows_of_scales, rows_of_shares, rows_of_means, rows_of_levels}) {
+  for (const auto rows :
+       {rows_of_discrimination, rows_of_identification, rows_of_tables, rows_of_choices,
+        rows_of_scales, rows_of_shares, rows_of_means, rows_of_levels}) {
     for (const Row& row : rows()) {
       if ((row.task + ", " + row.statistic).find(word) != std::string::npos) {
-        print(row, row.cost == Cost::much ? tracks : studies, seed);
+        print(row, limits, seed);
       }
       ++seed;
     }

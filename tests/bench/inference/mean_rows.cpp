@@ -9,6 +9,7 @@
 #include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/population/planned_contrasts.hpp"
 #include "analysis/statistics/population/test_retest.hpp"
+#include "analysis/statistics/quantiles.hpp"
 #include "analysis/statistics/scaling/power_law.hpp"
 #include "core/error.hpp"
 #include "inference/people.hpp"
@@ -113,7 +114,7 @@ std::vector<Row> rows_within() {
          std::vector<double> differences = shares_of(0.6, draw);
          const std::vector<double> others = shares_of(0.6, draw);
          std::ranges::transform(differences, others, differences.begin(), std::minus<>{});
-         return std::optional{Outcome{analysis::sign_flip_test(differences, 1).p}};
+         return std::optional{sign_flips_of(differences, draw.rng)};
        }},
       {size, task, "signs of ratios, a fifth beyond the levels", By::people,
        [](const StudyDraw& draw) {
@@ -146,7 +147,12 @@ std::vector<Row> rows_within() {
              }
            }
          }
-         return std::optional{Outcome{analysis::interaction_test(people, 1).p}};
+         std::vector<double> interactions;
+         for (const analysis::LevelTable& own : people) {
+           interactions.push_back(own[0][0] - own[0][1] - own[1][0] + own[1][1]);
+         }
+         return std::optional{Outcome{analysis::interaction_test(people, 1).p,
+                                      share_further_by_signs(interactions, draw.rng)}};
        }},
       {coverage, "two studies compared", "difference of shares .6 and .8", By::correlations,
        difference_of_studies},
@@ -194,6 +200,14 @@ std::vector<Row> rows_of_groups() {
       test_of_groups("of normal values", normal_of(1.0, 1), normal_of(1.0, 1)),
       test_of_groups("2 N values, three times the spread", normal_of(1.0, 1), normal_of(3.0, 2)),
       test_of_groups("shares .6, some stop", shares_around(0.6), shares_around(0.6)),
+      {Kind::size, "groups compared, N each", "ranks of ratios, a fifth beyond the levels",
+       By::people,
+       [](const StudyDraw& draw) {
+         const auto first = differences_of(0.0, 0.84, draw);
+         const auto scores = analysis::gehan_scores(first, differences_of(0.0, 0.84, draw));
+         return std::optional{
+             Outcome{analysis::group_permutation_test(scores.first, scores.second, 1).p}};
+       }},
   };
 }
 
@@ -213,6 +227,18 @@ std::optional<Outcome> exponent(const StudyDraw& draw) {
 std::optional<Outcome> bootstrap_of(const std::vector<double>& values, double truth) {
   const auto interval = analysis::bootstrap_interval(values, 999, 1);
   return interval ? std::optional{holds(*interval, truth)} : std::nullopt;
+}
+
+// A deviation of six settings is on average c4 of the person's own, which is log-normal.
+std::optional<Outcome> mean_deviation(const StudyDraw& draw) {
+  constexpr double c4_of_six = 0.9515329;
+  std::vector<double> found;
+  for (int person = 0; person < draw.people; ++person) {
+    const double own = draw.rng.log_normal(1.0, 0.3);
+    found.push_back(
+        analysis::mean_and_spread(normal_values(6, 0.0, own, draw.rng)).standard_deviation);
+  }
+  return holds(analysis::positive_interval(found), c4_of_six * std::exp(0.045));
 }
 
 // Of each the mean d' = 1.5, by 15 signals and 15 others, with criteria of their own.
@@ -265,11 +291,16 @@ std::vector<Row> rows_of_personal_values() {
        [](const StudyDraw& draw) {
          return bootstrap_of(normal_values(draw.people, 1.0, 1.0, draw.rng), 1.0);
        }},
-      {coverage, "adjustment", "mean of skewed settings, by t", By::people,
+      {coverage, "adjustment", "mean deviation of 6 settings", By::people, mean_deviation},
+      {coverage, "adjustment, times", "mean of skewed values above 0", By::people,
        [](const StudyDraw& draw) {
-         const double truth = std::exp(0.125);
-         return std::optional{
-             holds(analysis::t_interval(skewed_values(draw.people, draw.rng)), truth)};
+         return std::optional{holds(
+             analysis::positive_interval(skewed_values(draw.people, draw.rng)), std::exp(0.125))};
+       }},
+      {coverage, "adjustment, times", "mean of normal values above 0", By::people,
+       [](const StudyDraw& draw) {
+         const auto values = normal_values(draw.people, 4.0, 1.0, draw.rng);
+         return std::optional{holds(analysis::positive_interval(values), 4.0)};
        }},
       {coverage, "adjustment", "mean of skewed settings, by bootstrap", By::people,
        [](const StudyDraw& draw) {
@@ -278,7 +309,7 @@ std::vector<Row> rows_of_personal_values() {
       {size, "adjustment, equality", "no constant error", By::people,
        [](const StudyDraw& draw) {
          const auto values = normal_values(draw.people, 0.0, 1.0, draw.rng);
-         return std::optional{Outcome{analysis::sign_flip_test(values, 1).p}};
+         return std::optional{sign_flips_of(values, draw.rng)};
        }},
       {coverage, "identification", "mean d' of a class", By::people, mean_sensitivity},
       {coverage, "retest", "limit of agreement of two days", By::people, upper_limit},

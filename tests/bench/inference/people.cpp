@@ -1,7 +1,11 @@
 #include "inference/people.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <random>
 
+#include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/rank_tests.hpp"
 namespace tapstudy::bench {
 using analysis::Proportion;
@@ -58,6 +62,29 @@ std::vector<Proportion> sample_of(double mean, Trials trials, const StudyDraw& d
   return drawn;
 }
 
+double share_further_by_signs(const std::vector<double>& differences, core::Rng& rng) {
+  std::vector<double> sizes;
+  std::ranges::copy_if(differences, std::back_inserter(sizes), [](double d) { return d != 0.0; });
+  const double limit = std::abs(std::accumulate(sizes.begin(), sizes.end(), 0.0)) + 1e-9;
+  constexpr std::size_t most_enumerated = 9;
+  const bool is_exact = sizes.size() <= most_enumerated;
+  const std::uint32_t patterns = is_exact ? 1U << sizes.size() : 999U;
+  int further = 0;
+  for (std::uint32_t pattern = 0; pattern < patterns; ++pattern) {
+    const std::uint64_t signs = is_exact ? pattern : rng();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      sum += ((signs >> i) & 1U) != 0 ? sizes[i] : -sizes[i];
+    }
+    further += std::abs(sum) > limit ? 1 : 0;
+  }
+  return static_cast<double>(further) / static_cast<double>(patterns);
+}
+
+Outcome sign_flips_of(const std::vector<double>& differences, core::Rng& rng) {
+  return {analysis::sign_flip_test(differences, 1).p, share_further_by_signs(differences, rng)};
+}
+
 Outcome sign_test_of(const std::vector<double>& differences) {
   const analysis::SignTest test = analysis::sign_test(differences);
   const Proportion further{test.above.successes + 1, test.above.trials};
@@ -67,7 +94,6 @@ Outcome sign_test_of(const std::vector<double>& differences) {
 }
 
 Outcome accuracy_against(const analysis::NullTables& tables, std::uint64_t seed) {
-  constexpr int draws = 199;
   const auto right_in = [](const analysis::CountTable& counts) {
     std::int64_t right = 0;
     for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -79,12 +105,12 @@ Outcome accuracy_against(const analysis::NullTables& tables, std::uint64_t seed)
   core::Rng rng{seed};
   int better = 0;
   int as_good = 0;
-  for (int i = 0; i < draws; ++i) {
+  for (int i = 0; i < draws_of_a_test; ++i) {
     const std::int64_t drawn = right_in(tables.draw(rng()));
     better += drawn > observed ? 1 : 0;
     as_good += drawn >= observed ? 1 : 0;
   }
-  const auto p_of = [](int number) { return number / (draws + 1.0); };
+  const auto p_of = [](int number) { return number / (draws_of_a_test + 1.0); };
   return {p_of(1 + as_good), p_of(better)};
 }
 }  // namespace tapstudy::bench

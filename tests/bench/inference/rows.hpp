@@ -35,7 +35,6 @@ struct StudyDraw {
 enum class Kind { size, coverage, width };
 // What the three numbers in a cell are of: kinds of guessers, correlations of 0, .1 and .3; or one.
 enum class By { guessers, correlations, people };
-enum class Cost { little, much };  // so many studies, or so many tracks
 
 // A line of the table: one statistic of one task, and a study of it; unset: the report gives none.
 struct Row {
@@ -44,11 +43,11 @@ struct Row {
   std::string statistic;
   By by{By::people};
   std::function<std::optional<Outcome>(const StudyDraw& draw)> study;
-  Cost cost{Cost::little};
 };
 
 std::vector<Row> rows_of_discrimination();
 std::vector<Row> rows_of_identification();
+std::vector<Row> rows_of_tables();
 std::vector<Row> rows_of_choices();
 std::vector<Row> rows_of_scales();
 std::vector<Row> rows_of_shares();

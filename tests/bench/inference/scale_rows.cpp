@@ -126,6 +126,16 @@ std::optional<Outcome> worth(const StudyDraw& draw) {
   }();
   return holds(analysis::plackett_luce(rankings_of(draw), items).intervals[0], truth);
 }
+
+std::optional<Outcome> worth_difference(const StudyDraw& draw) {
+  static const double truth = [] {
+    core::Rng rng{8};
+    const auto scale = analysis::plackett_luce(rankings_of({many, rng}), items);
+    return scale.values[0] - scale.values[1];
+  }();
+  const auto scale = analysis::plackett_luce(rankings_of(draw), items);
+  return holds(analysis::difference(scale, 0, 1).interval, truth);
+}
 }  // namespace
 
 std::vector<Row> rows_of_scales() {
@@ -136,6 +146,7 @@ std::vector<Row> rows_of_scales() {
       {coverage, "paired", "value by Bradley and Terry", By::people, bradley_terry_value},
       {coverage, "paired", "value by Thurstone", By::people, thurstone_value},
       {coverage, "ranking", "worth by Plackett and Luce", By::people, worth},
+      {coverage, "ranking", "difference of two worths", By::people, worth_difference},
   };
 }
 }  // namespace tapstudy::bench

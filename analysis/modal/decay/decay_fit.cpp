@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr int max_steps = 60;
+constexpr double least_damping = 1e-12;
 
 // One decay's normal equations, in blocks: shared poles as s [1/s], own poles and shares in columns
 // of unit length.
@@ -117,11 +117,11 @@ void exchange(std::vector<WeightedDecay>& decays, std::vector<DecayModel::State>
 }
 }  // namespace
 
-bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared, double settled_share) {
+bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared, const Settling& settling) {
   double damping = 1e-3;
   double before = sum_of_squares(decays);
   std::vector<Normal> normals = normal_equations(decays, shared);
-  for (int step = 0; step < max_steps; ++step) {
+  for (int step = 0; step < settling.most_steps; ++step) {
     std::vector<DecayModel::State> states = moved(decays, step_of(normals, damping));
     exchange(decays, states);
     const double after = sum_of_squares(decays);
@@ -133,11 +133,11 @@ bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared, double set
       }
       continue;
     }
-    if (before - after <= settled_share * before) {
+    if (before - after <= settling.share * before) {
       return true;
     }
     before = after;
-    damping = std::max(damping / 5.0, 1e-12);
+    damping = std::max(damping / 5.0, least_damping);
     normals = normal_equations(decays, shared);
   }
   return false;
@@ -286,9 +286,9 @@ void set_shared_errors(const std::vector<WeightedDecay>& decays, std::size_t sha
 }  // namespace
 
 DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start,
-                   const std::vector<double>& lines_hz, double settled_share) {
+                   const std::vector<double>& lines_hz, const Settling& settling) {
   std::vector<WeightedDecay> decay{started({&spectrum, {}, lines_hz}, start)};
-  const bool has_converged = start.empty() || descend(decay, std::ssize(start), settled_share);
+  const bool has_converged = start.empty() || descend(decay, std::ssize(start), settling);
   return described(decay.front().model, decay.front().state, has_converged);
 }
 
@@ -309,5 +309,30 @@ SharedFit fit_shared_poles(const std::vector<SharingDecay>& sharing,
     set_significance(decays[i].state, variance, shared.size(), fit.decays[i]);
   }
   return fit;
+}
+
+std::vector<std::vector<Pole>> shared_poles_without(const std::vector<SharingDecay>& sharing,
+                                                    const std::vector<Pole>& shared,
+                                                    const std::vector<std::size_t>& group_of,
+                                                    std::size_t groups) {
+  std::vector<Normal> normals;
+  for (const SharingDecay& decay : sharing) {
+    normals.push_back(normal_equations(started(decay, shared), std::ssize(shared)));
+  }
+  std::vector<std::vector<Pole>> all(groups, shared);
+  for (std::size_t group = 0; group < groups; ++group) {
+    std::vector<Normal> others;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      if (group_of[i] != group) {
+        others.push_back(normals[i]);
+      }
+    }
+    const Eigen::VectorXd step = step_of(others, least_damping).shared;
+    for (std::size_t k = 0; k < shared.size() && step.allFinite(); ++k) {
+      const auto row = 2 * static_cast<Eigen::Index>(k);
+      all[group][k] = pole_of(log_of(shared[k], 1.0) + Complex{step[row], step[row + 1]}, 1.0);
+    }
+  }
+  return all;
 }
 }  // namespace tapstudy::analysis

@@ -12,15 +12,19 @@ struct WeightedDecay {
   double weight{1.0};  // of its squares: 1 over the variance of a value of its spectrum
 };
 
-// The share of its sum of squares by which a settled fit's last step lowered it.
-inline constexpr double settled_fit = 1e-7;
+// When a fit is settled: a step lowers its sum of squares by no more than this share.
+struct Settling {
+  double share{};
+  int most_steps{};
+};
+inline constexpr Settling settled_fit{1e-7, 60};
 
 // Variable projection (Golub & Pereyra 1973, Kaufman's approximation) with Levenberg-Marquardt
-// steps on the poles until a step lowers the weighted sum of squares by no more than this share;
-// true if it came to that. The first `shared` poles of all decays are the same and remain so; what
+// steps on the poles until the weighted sum of squares has settled; true if it came to that. The
+// first `shared` poles of all decays are the same and remain so; what
 // each decay has of its own is eliminated from the normal equations decay by decay (Schur
 // complement).
-bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared, double settled_share);
+bool descend(std::vector<WeightedDecay>& decays, Eigen::Index shared, const Settling& settling);
 
 // The Fisher information of the shared poles' Re s and Im s [1/s], everything else unknown, too.
 Eigen::MatrixXd information_on_shared(const std::vector<WeightedDecay>& decays,
@@ -59,12 +63,13 @@ struct DecayFit {
 // fitted.
 void set_residual(const DecayModel& model, const DecayModel::State& state, DecayFit& fit);
 
-// Maximum likelihood in white noise from these poles on (descend, decay_model.hpp). A larger
-// settled_share gives a rough fit. Standard errors are those of the Cramer-Rao bound, with the
-// noise of the residual. Steady lines of these frequencies, such as hum, take part with amplitudes
-// alone. Throws InvalidInput for more unknowns than values.
+// Maximum likelihood in white noise from these poles on (descend, decay_model.hpp). Standard errors
+// are those of the Cramer-Rao bound, with the noise of the residual. Steady lines of these
+// frequencies, such as hum, take part with amplitudes alone. Throws InvalidInput for more unknowns
+// than values.
 DecayFit fit_decay(const BandSpectrum& spectrum, const std::vector<Pole>& start,
-                   const std::vector<double>& lines_hz = {}, double settled_share = settled_fit);
+                   const std::vector<double>& lines_hz = {},
+                   const Settling& settling = settled_fit);
 
 // One of several decays that some modes are common to.
 struct SharingDecay {
@@ -82,4 +87,11 @@ struct SharedFit {
 // As fit_decay, for one or more decays that share these poles: only amplitudes differ between them.
 SharedFit fit_shared_poles(const std::vector<SharingDecay>& decays,
                            const std::vector<Pole>& shared);
+
+// The shared poles without each group of decays in turn, to first order: one step from the fit of
+// all, which these decays and poles are. group_of: of each decay, below `groups`.
+std::vector<std::vector<Pole>> shared_poles_without(const std::vector<SharingDecay>& decays,
+                                                    const std::vector<Pole>& shared,
+                                                    const std::vector<std::size_t>& group_of,
+                                                    std::size_t groups);
 }  // namespace tapstudy::analysis

@@ -178,8 +178,10 @@ Criterion criterion_of_impacts(const std::vector<TapModes>& taps, const std::vec
       poles.push_back(poles_of_impact(channel, neighbours));
     }
     const std::vector<Pole>& most = *std::ranges::max_element(poles, {}, &std::vector<Pole>::size);
-    const std::vector<SharingDecay> decays = sharing(channels, neighbours, most.size());
-    if (decays.empty()) {  // a channel too short for what another one shows
+    const std::vector<SharingDecay> decays = channels.size() == 1
+                                                 ? std::vector<SharingDecay>{}
+                                                 : sharing(channels, neighbours, most.size());
+    if (decays.empty()) {  // one channel, or one too short for what another one shows
       for (std::size_t i = 0; i < channels.size(); ++i) {
         all.unknowns += 2.0 * static_cast<double>(poles[i].size());
         all.add(channels[i].fit, poles[i].size());
@@ -219,22 +221,18 @@ std::vector<std::vector<Pole>> poles_without(const std::vector<SharingDecay>& de
   const std::set<int> different{impacts.begin(), impacts.end()};
   const std::vector<int> numbers{different.begin(), different.end()};
   const std::size_t groups = std::min(numbers.size(), max_groups);
-  std::vector<std::vector<Pole>> all;
-  for (std::size_t group = 0; group < groups && groups > 1; ++group) {
-    std::vector<SharingDecay> others;
-    for (std::size_t i = 0; i < decays.size(); ++i) {
-      const auto place = std::ranges::lower_bound(numbers, impacts[i]) - numbers.begin();
-      if (static_cast<std::size_t>(place) % groups != group) {
-        others.push_back(decays[i]);
-      }
-    }
-    all.push_back(shared_poles(fit_shared_poles(others, of_all), of_all.size()));
-    if (!std::ranges::all_of(all.back(),
-                             [&](const Pole& pole) { return neighbours.may_hold(pole); })) {
-      return {};
-    }
+  std::vector<std::size_t> group_of;
+  for (const int impact : impacts) {
+    const auto place = std::ranges::lower_bound(numbers, impact) - numbers.begin();
+    group_of.push_back(static_cast<std::size_t>(place) % groups);
   }
-  return all;
+  std::vector<std::vector<Pole>> all = groups > 1
+                                           ? shared_poles_without(decays, of_all, group_of, groups)
+                                           : std::vector<std::vector<Pole>>{};
+  const bool are_found = std::ranges::all_of(all, [&](const std::vector<Pole>& poles) {
+    return std::ranges::all_of(poles, [&](const Pole& pole) { return neighbours.may_hold(pole); });
+  });
+  return are_found ? all : std::vector<std::vector<Pole>>{};
 }
 
 RepeatedMode repeated(const std::vector<std::vector<Pole>>& without, std::size_t k,
@@ -283,9 +281,26 @@ void replace_in_tap(const CloseModes& neighbours, const DecayFit& fit, std::size
   tap.fit = fit;
 }
 
-// Changes nothing unless the modes are resolved.
+// Poles that nothing tells apart may get any amplitudes, if these cancel each other.
+bool cancel_each_other(const SharedFit& fit, std::size_t shared,
+                       const std::vector<FreeDecay>& decays) {
+  constexpr double beyond = 30.0;  // of the largest sample
+  std::size_t impossible = 0;
+  for (std::size_t i = 0; i < decays.size(); ++i) {
+    const double most = beyond * decays[i].samples.cwiseAbs().maxCoeff();
+    double largest = 0.0;
+    for (std::size_t k = 0; k < shared; ++k) {
+      largest = std::max(largest, fit.decays[i].modes[k].amplitude);
+    }
+    impossible += largest > most ? 1 : 0;
+  }
+  return 2 * impossible > decays.size();
+}
+
+// Changes nothing unless the modes are resolved. recorded: the decays of the taps.
 void resolve(const CloseModes& neighbours, const std::vector<Pole>& poles,
-             const std::vector<int>& impacts, ModesOfTaps& found) {
+             const std::vector<FreeDecay>& recorded, const std::vector<int>& impacts,
+             ModesOfTaps& found) {
   const std::vector<SharingDecay> decays = sharing(found.taps, neighbours, poles.size());
   if (decays.empty()) {
     return;
@@ -296,6 +311,7 @@ void resolve(const CloseModes& neighbours, const std::vector<Pole>& poles,
       together.decays.front().has_converged &&
       std::ranges::all_of(fitted, [&](const Pole& pole) { return neighbours.may_hold(pole); });
   if (!are_inside || may_be_one_nonlinear_mode(fitted) ||
+      cancel_each_other(together, poles.size(), recorded) ||
       criterion_of(together, poles.size()).value() >=
           criterion_of_impacts(found.taps, impacts, neighbours).value()) {
     return;
@@ -353,7 +369,7 @@ ModesOfTaps resolve_close_modes(const std::vector<FreeDecay>& decays,
   for (const CloseModes& neighbours : close_modes_among(found.modes)) {
     const std::vector<Pole> poles = poles_of_all_decays(pencil, neighbours);
     if (!poles.empty()) {
-      resolve(neighbours, poles, impacts, result);
+      resolve(neighbours, poles, decays, impacts, result);
     }
   }
   std::ranges::sort(result.modes, {},

@@ -20,8 +20,9 @@ constexpr double steady_fall = 0.15;
 constexpr double plain_fall = 0.5;
 constexpr double min_decay_z = 2.0;
 constexpr double min_slow_decay_z = 4.0;
-constexpr double rough_chi_squared = 0.01;  // a step's, below which a fit shows what is weak
-constexpr double neighbourhood = 0.1;       // of the frequency
+constexpr double rough_chi_squared = 0.1;  // a step's, below which a fit shows what is weak
+constexpr int rough_steps = 8;
+constexpr double neighbourhood = 0.1;  // of the frequency
 constexpr double same_line = 0.01;
 constexpr int further_pairs = 4;
 constexpr double mains_tolerance = 0.004;
@@ -40,15 +41,30 @@ bool agree(const FittedMode& fitted, const Pole& other) {
              std::max({0.25 * std::abs(pole.damping_ratio), 0.003, 4.0 * fitted.ratio_error});
 }
 
+// Whether it has many times the energy of all that was recorded: two poles that nothing tells apart
+// may get any amplitudes, if these cancel each other.
+bool is_cancelled(const FittedMode& mode, const BandSpectrum& spectrum) {
+  constexpr double most_energy = 100.0;  // of the recorded
+  const double duration_s = static_cast<double>(spectrum.length) / spectrum.rate_hz;
+  const double falls =
+      2.0 * mode.pole.damping_ratio * 2.0 * std::numbers::pi * mode.pole.frequency_hz * duration_s;
+  const double share = std::abs(falls) > 1e-6 ? -std::expm1(-falls) / falls : 1.0;
+  const double recorded =
+      2.0 * spectrum.values.squaredNorm() / static_cast<double>(spectrum.length);
+  return 0.5 * mode.amplitude * mode.amplitude * static_cast<double>(spectrum.length) * share >
+         most_energy * recorded;
+}
+
 // The modes that drop out: those that are not significant or left the band. Of neighbours only the
 // weakest: two poles on one mode make each other insignificant.
-std::vector<std::size_t> insignificant(const std::vector<FittedMode>& modes, const Band& band) {
+std::vector<std::size_t> insignificant(const std::vector<FittedMode>& modes,
+                                       const BandSpectrum& spectrum, const Band& band) {
   std::vector<std::pair<double, std::size_t>> weak;
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const FittedMode& mode = modes[i];
     const bool is_possible = band.holds(mode.pole.frequency_hz) &&
                              std::abs(mode.pole.damping_ratio) < max_ratio &&
-                             std::isfinite(mode.significance);
+                             std::isfinite(mode.significance) && !is_cancelled(mode, spectrum);
     if (!is_possible || mode.significance < min_significance) {
       weak.emplace_back(is_possible ? mode.significance : 0.0, i);
     }
@@ -107,23 +123,24 @@ std::vector<Candidate> kept_of(const std::vector<Candidate>& candidates,
 // fit has settled to the last digit.
 DecayFit fit_significant(const BandSpectrum& spectrum, const Band& band,
                          const std::vector<double>& lines_hz, std::vector<Candidate>& candidates) {
-  const double rough_share = rough_chi_squared / static_cast<double>(2 * spectrum.values.size());
-  double settled_share = rough_share;
+  const Settling rough{rough_chi_squared / static_cast<double>(2 * spectrum.values.size()),
+                       rough_steps};
+  bool is_rough = true;
   for (;;) {
-    DecayFit fit = fit_decay(spectrum, poles_of(candidates), lines_hz, settled_share);
-    const std::vector<std::size_t> drop = insignificant(fit.modes, band);
-    if (drop.empty() && settled_share == settled_fit) {
+    DecayFit fit =
+        fit_decay(spectrum, poles_of(candidates), lines_hz, is_rough ? rough : settled_fit);
+    const std::vector<std::size_t> drop = insignificant(fit.modes, spectrum, band);
+    if (drop.empty() && !is_rough) {
       return fit;
     }
-    settled_share = drop.empty() ? settled_fit : rough_share;
+    is_rough = !drop.empty();
     candidates = kept_of(candidates, drop, fit, band);
   }
 }
 
 // Each pole of the rational fit goes to the nearest mode with which it agrees, one to each.
 void match_rational_fit(const DecayFit& fit, const std::vector<Pole>& rational,
-                        const std::vector<double>& lines_hz, std::vector<Candidate>& candidates,
-                        std::vector<Pole>& unmatched) {
+                        std::vector<Candidate>& candidates, std::vector<Pole>& unmatched) {
   for (const Pole& pole : rational) {
     std::size_t best = candidates.size();
     double least = 0.0;
@@ -137,7 +154,7 @@ void match_rational_fit(const DecayFit& fit, const std::vector<Pole>& rational,
     }
     if (best < candidates.size()) {
       candidates[best].by_rational_fit = pole;
-    } else if (pole.damping_ratio < max_ratio && !is_at_line(pole, lines_hz)) {
+    } else if (pole.damping_ratio < max_ratio) {
       unmatched.push_back(pole);
     }
   }
@@ -221,45 +238,76 @@ std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<doubl
   return static_cast<std::size_t>(std::clamp<Eigen::Index>(beside_lines, 0, (values - 4) / 3));
 }
 
-TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding) {
-  const Band wide{0.8 * finding.band.low_hz,
-                  std::min(1.25 * finding.band.high_hz, 0.47 * decay.rate_hz)};
+namespace {
+Band somewhat_wider(const Band& band, double rate_hz) {
+  return {0.8 * band.low_hz, std::min(1.25 * band.high_hz, 0.47 * rate_hz)};
+}
+
+void judge(const std::vector<Candidate>& candidates, const Band& band, double duration_s,
+           TapModes& result) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const FittedMode& fitted = result.fit.modes[i];
+    if (band.holds(fitted.pole.frequency_hz)) {
+      result.modes.push_back(judged(fitted, candidates[i], duration_s));
+    }
+  }
+  std::ranges::sort(result.modes, {},
+                    [](const TapMode& mode) { return mode.fitted.pole.frequency_hz; });
+}
+}  // namespace
+
+TapModes identify_modes(const FreeDecay& decay, const Band& band) {
+  const Band wide = somewhat_wider(band, decay.rate_hz);
   TapModes result;
-  result.lines_hz = finding.lines_hz;
   result.pencil = matrix_pencil(decay, wide, max_model_order);
   result.spectrum = band_spectrum(decay, wide);
-  const std::size_t room = max_mode_count(result.spectrum, finding.lines_hz);
+  const std::size_t room = max_mode_count(result.spectrum, {});
   std::vector<StablePole> stable = stable_poles(result.pencil.orders);
   std::ranges::stable_sort(stable, std::ranges::greater{}, &StablePole::orders);
   stable.resize(std::min(stable.size(), room));
   std::vector<Candidate> candidates;
   for (const StablePole& one : stable) {
-    if (!is_at_line(one.pole, finding.lines_hz)) {
-      candidates.push_back({one.pole, one.orders, std::nullopt});
-    }
+    candidates.push_back({one.pole, one.orders, std::nullopt});
   }
-  result.fit = fit_significant(result.spectrum, wide, finding.lines_hz, candidates);
+  result.fit = fit_significant(result.spectrum, wide, {}, candidates);
   const int pairs =
       std::min(static_cast<int>(candidates.size()) + further_pairs, static_cast<int>(room));
   std::vector<Pole> unmatched;
-  match_rational_fit(result.fit, vector_fitting(result.spectrum, pairs), finding.lines_hz,
-                     candidates, unmatched);
+  match_rational_fit(result.fit, vector_fitting(result.spectrum, pairs), candidates, unmatched);
   if (!unmatched.empty() && candidates.size() + unmatched.size() <= room) {
-    std::vector<Candidate> with_others = candidates;
     for (const Pole& pole : unmatched) {
-      with_others.push_back({pole, 0, pole});
+      candidates.push_back({pole, 0, pole});
     }
-    result.fit = fit_significant(result.spectrum, wide, finding.lines_hz, with_others);
-    candidates = std::move(with_others);
+    result.fit = fit_significant(result.spectrum, wide, {}, candidates);
   }
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const FittedMode& fitted = result.fit.modes[i];
-    if (finding.band.holds(fitted.pole.frequency_hz)) {
-      result.modes.push_back(judged(fitted, candidates[i], decay.duration_s()));
+  judge(candidates, band, decay.duration_s(), result);
+  return result;
+}
+
+TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& band,
+                    const std::vector<double>& lines_hz) {
+  TapModes result = before;
+  result.lines_hz = lines_hz;
+  result.modes.clear();
+  std::vector<Candidate> candidates;
+  for (const FittedMode& fitted : before.fit.modes) {
+    const auto known = std::ranges::find_if(before.modes, [&](const TapMode& mode) {
+      return mode.fitted.pole.frequency_hz == fitted.pole.frequency_hz;
+    });
+    if (is_at_line(fitted.pole, lines_hz)) {
+      continue;
+    }
+    candidates.push_back({fitted.pole, 0, std::nullopt});
+    if (known != before.modes.end()) {
+      candidates.back() = {fitted.pole, known->stable_orders, known->by_rational_fit};
     }
   }
-  std::ranges::sort(result.modes, {},
-                    [](const TapMode& mode) { return mode.fitted.pole.frequency_hz; });
+  if (candidates.size() > max_mode_count(before.spectrum, lines_hz)) {
+    throw core::InvalidInput{"a decay is too short for so many modes and lines"};
+  }
+  result.fit =
+      fit_significant(result.spectrum, somewhat_wider(band, decay.rate_hz), lines_hz, candidates);
+  judge(candidates, band, decay.duration_s(), result);
   return result;
 }
 

@@ -30,11 +30,6 @@ struct TapModes {
   std::vector<double> lines_hz;  // steady tones that took part in the fit
 };
 
-struct ModeFinding {
-  Band band;
-  std::vector<double> lines_hz{};  // steady tones known to be there, from other taps
-};
-
 // Modes of one tap. Poles that are stable by the matrix pencil and those by vector fitting are
 // fitted together (fit_decay), in a band up to a quarter wider, so that a mode just outside is not
 // felt inside; poles whose amplitude is not significant (chi-squared below 25) are dropped, the
@@ -43,7 +38,12 @@ struct ModeFinding {
 // a quarter (or 0.003, or four standard errors). What falls by less than 14 % over the tap, or not
 // significantly, is a line; by less than 40 %, also where a harmonic of the mains is. Throws
 // InvalidInput for decays that are too short.
-TapModes identify_modes(const FreeDecay& decay, const ModeFinding& finding);
+TapModes identify_modes(const FreeDecay& decay, const Band& band);
+
+// The same tap's modes fitted again beside steady tones that other taps show. Throws InvalidInput
+// for a decay too short for that.
+TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& band,
+                    const std::vector<double>& lines_hz);
 
 // The largest number of modes that can be fitted to a spectrum beside lines.
 std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);

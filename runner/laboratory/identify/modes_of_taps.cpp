@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "analysis/modal/decay/decay_band.hpp"
@@ -130,7 +131,7 @@ PartOfBand identified_in(const analysis::Band& band, const std::vector<Identifie
   for (std::size_t i = 0; i < taps.size(); ++i) {
     analysis::FreeDecay decay = analysis::shortened_for(band, taps[i].decay);
     try {
-      part.modes.push_back(analysis::identify_modes(decay, {band}));
+      part.modes.push_back(analysis::identify_modes(decay, band));
     } catch (const core::InvalidInput& error) {
       remarks.add(taps[i].file,
                   {taps[i].time_s, fmt::format("left out, {}", error.what()), std::string{}});
@@ -146,13 +147,12 @@ PartOfBand identified_in(const analysis::Band& band, const std::vector<Identifie
 void share_lines(const std::vector<IdentifiedTap>& taps, PartOfBand& part, TapRemarks& remarks) {
   const std::vector<analysis::TapModes> alone = part.modes;
   for (std::size_t k = 0; k < part.taps.size(); ++k) {
-    analysis::ModeFinding finding{part.band};
-    finding.lines_hz = analysis::missed_lines(part.modes[k], alone);
-    if (finding.lines_hz.empty()) {
+    const std::vector<double> lines_hz = analysis::missed_lines(part.modes[k], alone);
+    if (lines_hz.empty()) {
       continue;
     }
     try {
-      part.modes[k] = analysis::identify_modes(part.decays[k], finding);
+      part.modes[k] = analysis::with_lines(alone[k], part.decays[k], part.band, lines_hz);
     } catch (const core::InvalidInput& error) {
       const IdentifiedTap& tap = taps[part.taps[k]];
       remarks.add(tap.file, {tap.time_s,
@@ -274,17 +274,35 @@ struct FreeTaps {
   std::vector<analysis::RepeatedMode> died;
 };
 
+// All sensors of some impacts, spread over the recordings: enough to tell when decays are free.
+std::vector<IdentifiedTap> some_of(const std::vector<IdentifiedTap>& taps) {
+  constexpr std::size_t enough = 12;
+  const std::vector<int> all = impacts_of(taps);
+  const std::set<int> different{all.begin(), all.end()};
+  const std::size_t apart = different.size() / enough;
+  if (apart < 2) {
+    return taps;
+  }
+  std::vector<IdentifiedTap> some;
+  std::ranges::copy_if(taps, std::back_inserter(some), [&](const IdentifiedTap& tap) {
+    const auto place = std::distance(different.begin(), different.find(tap.impact));
+    return static_cast<std::size_t>(place) % apart == 0;
+  });
+  return some;
+}
+
 FreeTaps free_taps(const analysis::Band& band, const std::vector<IdentifiedTap>& taps,
                    TapRemarks& remarks) {
-  FoundInTaps first = looked_at(band, taps, remarks);
+  FoundInTaps first = looked_at(band, some_of(taps), remarks);
   const double settled_s =
       first.taps.empty() ? 0.0
                          : analysis::settled_after_s(decays_of(first.taps), impacts_of(first.taps),
                                                      band, first.found);
   if (settled_s <= 0.0) {
-    return {std::move(first), {}};
+    const bool are_all = some_of(taps).size() == taps.size();
+    return {are_all ? std::move(first) : looked_at(band, taps, remarks), {}};
   }
-  std::vector<IdentifiedTap> later = first.taps;
+  std::vector<IdentifiedTap> later = taps;
   begin_later(settled_s, later, remarks);
   FreeTaps result{looked_at(band, std::move(later), remarks), {}};
   result.died = died_before(settled_s, band, first, result.free.found);

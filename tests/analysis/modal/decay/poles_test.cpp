@@ -113,7 +113,7 @@ out(y + 1e-3 * np.std(y) * rng.normal(size=len(y)))
 )");
   REQUIRE(numbers.size() == 1206);
   const FreeDecay decay{2000.0, Eigen::Map<const Eigen::VectorXd>{numbers.data() + 6, 1200}};
-  const TapModes tap = identify_modes(decay, {{20.0, 400.0}});
+  const TapModes tap = identify_modes(decay, {20.0, 400.0});
   REQUIRE(agreed_in(tap) == 3);
   for (std::size_t k = 0; k < 3; ++k) {
     const TapMode* const mode = mode_near(tap, numbers[k]);
@@ -161,7 +161,7 @@ TEST_CASE("two modes closer than their half-power bandwidth are told apart", "[a
       testing::planted_decay({{{118.0, 0.03}, 1.0}, {{122.0, 0.03}, 0.8}}, 2000.0, 0.5);
   core::Rng rng{11};
   testing::add_noise(decay, 40.0, rng);
-  const TapModes tap = identify_modes(decay, {{20.0, 300.0}});
+  const TapModes tap = identify_modes(decay, {20.0, 300.0});
   REQUIRE(agreed_in(tap) == 2);
   CHECK(tap.modes[0].fitted.pole.frequency_hz == Approx(118.0).margin(0.2));
   CHECK(tap.modes[1].fitted.pole.frequency_hz == Approx(122.0).margin(0.2));
@@ -174,7 +174,7 @@ TEST_CASE("noise has no agreed mode", "[analysis][modal]") {
     for (double& sample : noise.samples) {
       sample = rng.normal();
     }
-    CHECK(agreed_in(identify_modes(noise, {{20.0, 400.0}})) == 0);
+    CHECK(agreed_in(identify_modes(noise, {20.0, 400.0})) == 0);
   }
 }
 
@@ -190,7 +190,7 @@ TEST_CASE("an undamped line is no mode, and at the mains it is called hum", "[an
       testing::planted_decay({{{90.0, 0.03}, 1.0}, {{line_hz, ratio}, 0.3}}, 2000.0, 0.5);
   core::Rng rng{3};
   testing::add_noise(decay, ratio > 0.0 ? 60.0 : 30.0, rng);
-  const TapModes tap = identify_modes(decay, {{20.0, 300.0}});
+  const TapModes tap = identify_modes(decay, {20.0, 300.0});
   const TapMode* const line = mode_near(tap, line_hz);
   REQUIRE(line != nullptr);
   CHECK(line->standing == Standing::line);
@@ -204,7 +204,7 @@ TEST_CASE("a mode whose tap is over before it has fallen by half is a mode, not 
       testing::planted_decay({{{62.0, 0.004}, 1.0}, {{118.0, 0.003}, 0.7}}, 4000.0, 0.22);
   core::Rng rng{5};
   testing::add_noise(decay, 40.0, rng);
-  const TapModes tap = identify_modes(decay, {{20.0, 400.0}});
+  const TapModes tap = identify_modes(decay, {20.0, 400.0});
   for (const double frequency_hz : {62.0, 118.0}) {
     const TapMode* const mode = mode_near(tap, frequency_hz);
     REQUIRE(mode != nullptr);
@@ -232,8 +232,8 @@ TEST_CASE("a pole that does not last over the orders is not stable", "[analysis]
 TEST_CASE("a decay that is too short for the band is refused with the length it takes",
           "[analysis][modal]") {
   const FreeDecay decay = testing::planted_decay(planted_modes, 4000.0, 0.01);
-  CHECK_THROWS_WITH(identify_modes(decay, {band}), Contains("too short") && Contains("at least"));
-  CHECK_THROWS_AS(identify_modes(decay, {band}), core::InvalidInput);
+  CHECK_THROWS_WITH(identify_modes(decay, band), Contains("too short") && Contains("at least"));
+  CHECK_THROWS_AS(identify_modes(decay, band), core::InvalidInput);
 }
 
 TEST_CASE("hum beside a mode falsifies its damping until another tap tells of it",
@@ -245,15 +245,15 @@ TEST_CASE("hum beside a mode falsifies its damping until another tap tells of it
   testing::add_noise(decay, 35.0, rng);
   FreeDecay long_decay = testing::planted_decay(with_hum, 4000.0, 1.0);
   testing::add_noise(long_decay, 40.0, rng);
-  const TapModes alone = identify_modes(decay, {{20.0, 200.0}});
-  const std::vector<TapModes> taps{alone, identify_modes(long_decay, {{20.0, 200.0}})};
+  const TapModes alone = identify_modes(decay, {20.0, 200.0});
+  const std::vector<TapModes> taps{alone, identify_modes(long_decay, {20.0, 200.0})};
   REQUIRE(alone.modes.size() == 1);
   REQUIRE(taps[1].modes.size() == 2);
   CHECK(missed_lines(taps[1], taps).empty());
   const std::vector<double> lines_hz = missed_lines(alone, taps);
   REQUIRE(lines_hz.size() == 1);
   CHECK(lines_hz.front() == Approx(50.0).margin(0.05));
-  const TapModes told = identify_modes(decay, {{20.0, 200.0}, lines_hz});
+  const TapModes told = with_lines(alone, decay, {20.0, 200.0}, lines_hz);
   REQUIRE(told.modes.size() == 1);
   const FittedMode& mode = told.modes.front().fitted;
   CHECK(std::abs(mode.pole.damping_ratio - 0.055) < 3.0 * mode.ratio_error);
@@ -281,7 +281,7 @@ std::vector<TapModes> modes_of(const Recording& recording) {
     const auto begin = static_cast<Eigen::Index>(tap.begin);
     const auto end = static_cast<Eigen::Index>(tap.end);
     taps.push_back(
-        identify_modes({recording.rate_hz, all.segment(begin, end - begin)}, {{20.0, 400.0}}));
+        identify_modes({recording.rate_hz, all.segment(begin, end - begin)}, {20.0, 400.0}));
   }
   return taps;
 }

@@ -197,7 +197,7 @@ ModesOfTaps found_in(const std::vector<Channel>& channels, double signal_to_nois
     }
     decays.push_back(decay);
     impacts.push_back(channel.impact);
-    alone.push_back(identify_modes(decay, {sought}));
+    alone.push_back(identify_modes(decay, sought));
   }
   return resolve_close_modes(decays, impacts, sought, {alone, modes_over_taps(alone, impacts)});
 }
@@ -303,7 +303,7 @@ TEST_CASE("a mode whose frequency falls with its amplitude is not taken for two"
     }
     decays.push_back(decay);
     impacts.push_back(impact);
-    alone.push_back(identify_modes(decay, {sought}));
+    alone.push_back(identify_modes(decay, sought));
   }
   const ModesOfTaps by_taps{alone, modes_over_taps(alone, impacts)};
   REQUIRE(agreed_near(by_taps, low_hz).size() == 1);
@@ -361,7 +361,7 @@ FaultyTaps identified(std::vector<FreeDecay> decays) {
   FaultyTaps taps{std::move(decays), {}, {}};
   for (const FreeDecay& decay : taps.decays) {
     taps.impacts.push_back(static_cast<int>(taps.impacts.size()));
-    taps.found.taps.push_back(identify_modes(decay, {sought}));
+    taps.found.taps.push_back(identify_modes(decay, sought));
   }
   const ModesOfTaps alone{taps.found.taps, modes_over_taps(taps.found.taps, taps.impacts)};
   taps.found = resolve_close_modes(taps.decays, taps.impacts, sought, alone);
@@ -432,7 +432,7 @@ TEST_CASE("two modes that all taps tell apart are not taken for one that follows
     }
     decays.push_back(decay);
     impacts.push_back(channel.impact);
-    alone.push_back(identify_modes(decay, {sought}));
+    alone.push_back(identify_modes(decay, sought));
   }
   ModesOfTaps found =
       resolve_close_modes(decays, impacts, sought, {alone, modes_over_taps(alone, impacts)});

@@ -1,7 +1,10 @@
 #include "core/tick/modal_state.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <tuple>
 namespace tapstudy::core {
 namespace {
 // A decaying state is flushed to zero before it becomes denormal, where arithmetic is slow. The
@@ -39,14 +42,36 @@ ModalState::ModalState(const ModalModel& model, Integrator integrator, double dt
 }
 
 void ModalState::touch(const SurfacePoint& point, const Vec3& normal) noexcept {
-  touched_.setZero();
+  struct Part {
+    double weight;
+    const double* shape;  // of all modes
+  };
+  std::array<Part, 3 * std::tuple_size_v<decltype(point.nodes)>> parts;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < point.count; ++i) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       const double weight = point.weights[i] * normal[axis];
       if (weight != 0.0) {
-        touched_ +=
-            weight * model_->shape.row(Eigen::Index{3} * point.nodes[i] + axis).transpose().array();
+        const Eigen::Index row = Eigen::Index{3} * point.nodes[i] + axis;
+        parts[count++] = {weight, model_->shape.data() + row * model_->shape.outerStride()};
       }
+    }
+  }
+  // Sums of a few modes stay in registers while the parts are added to them.
+  constexpr Eigen::Index block = 8;
+  using Block = Eigen::Array<double, block, 1>;
+  Eigen::Index first = 0;
+  for (; first + block <= touched_.size(); first += block) {
+    Block sum = Block::Zero();
+    for (std::size_t i = 0; i < count; ++i) {
+      sum += parts[i].weight * Eigen::Map<const Block>{parts[i].shape + first};
+    }
+    touched_.segment<block>(first) = sum;
+  }
+  for (; first < touched_.size(); ++first) {
+    touched_[first] = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      touched_[first] += parts[i].weight * parts[i].shape[first];
     }
   }
 }

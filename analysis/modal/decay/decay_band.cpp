@@ -8,6 +8,7 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr double beginning_s = 0.01;
+constexpr double longer_beginning_s = 0.04;
 constexpr double usable_share = 0.47;  // of the rate
 constexpr double over_rest = 3.0;
 constexpr double prominence = 1.5;
@@ -41,11 +42,9 @@ bool is_peak(const Eigen::ArrayXd& values, Eigen::Index i) {
          values[i] > prominence * std::max(below.minCoeff(), above.minCoeff());
 }
 
-double highest_peak_of(const FreeDecay& decay, double low_hz) {
-  const auto count = static_cast<Eigen::Index>(std::lround(beginning_s * decay.rate_hz));
-  if (count < 32 || decay.samples.size() < 2 * count) {
-    return usable_share * decay.rate_hz;  // too few samples to tell: everything
-  }
+// By a beginning of this length.
+double highest_peak_within(double begin_s, const FreeDecay& decay, double low_hz) {
+  const auto count = static_cast<Eigen::Index>(std::lround(begin_s * decay.rate_hz));
   const Magnitudes begin = magnitudes_of(decay.samples.head(count), decay.rate_hz, low_hz);
   const Magnitudes rest = magnitudes_of(decay.samples.tail(count), decay.rate_hz, low_hz);
   const double least = weakest_sought * begin.values.maxCoeff();
@@ -57,6 +56,19 @@ double highest_peak_of(const FreeDecay& decay, double low_hz) {
     }
   }
   return highest_hz;
+}
+
+// Low modes side by side make no peaks of their own in so short a beginning.
+double highest_peak_of(const FreeDecay& decay, double low_hz) {
+  if (beginning_s * decay.rate_hz < 32.0 || decay.duration_s() < 2.0 * beginning_s) {
+    return usable_share * decay.rate_hz;  // too few samples to tell: everything
+  }
+  const double highest_hz = highest_peak_within(beginning_s, decay, low_hz);
+  if (highest_hz > first_octave_hz || decay.duration_s() < 2.0 * longer_beginning_s) {
+    return highest_hz;
+  }
+  const double by_longer_hz = highest_peak_within(longer_beginning_s, decay, low_hz);
+  return std::max(highest_hz, std::min(by_longer_hz, first_octave_hz));
 }
 }  // namespace
 

@@ -7,10 +7,10 @@ namespace tapstudy::analysis {
 inline constexpr double weakest_sought = 0.05;
 
 // The highest frequency at which the beginnings of these decays (10 ms, so that modes that die away
-// soon count as much as those that ring on) have a spectral peak, no weaker than weakest_sought
-// times the largest, and three times what is left there at the end of the decay. Of several decays
-// the 80 % quantile: a click in one of them is not the structure's. 0 if none has a peak. The
-// decays are not empty.
+// soon count as much as those that ring on; below 1000 Hz also 40 ms, which tell more of them) have
+// a spectral peak, no weaker than weakest_sought times the largest, and three times what is left
+// there at the end of the decay. Of several decays the 80 % quantile: a click in one of them is not
+// the structure's. 0 if none has a peak. The decays are not empty.
 double highest_peak_hz(const std::vector<FreeDecay>& decays, double low_hz);
 
 // The energy of the decays beside a band.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -212,23 +213,47 @@ std::vector<SharingDecay> begun_with(const SharedFit& fit, std::size_t shared,
   return decays;
 }
 
+double moved_by(const std::vector<Pole>& poles, const std::vector<Pole>& of_all) {
+  double squares = 0.0;
+  for (std::size_t k = 0; k < poles.size(); ++k) {
+    squares += std::norm(log_of(poles[k], 1.0) - log_of(of_all[k], 1.0));
+  }
+  return squares;
+}
+
 // The shared poles without each group of impacts in turn, at most max_groups groups; empty if one
-// of them is not what was found with all.
+// of them is not what was found with all. To first order, but for the groups that matter most.
 std::vector<std::vector<Pole>> poles_without(const std::vector<SharingDecay>& decays,
                                              const std::vector<int>& impacts,
                                              const std::vector<Pole>& of_all,
                                              const CloseModes& neighbours) {
+  constexpr std::size_t fitted_groups = 3;
   const std::set<int> different{impacts.begin(), impacts.end()};
   const std::vector<int> numbers{different.begin(), different.end()};
   const std::size_t groups = std::min(numbers.size(), max_groups);
+  if (groups < 2) {
+    return {};
+  }
   std::vector<std::size_t> group_of;
   for (const int impact : impacts) {
     const auto place = std::ranges::lower_bound(numbers, impact) - numbers.begin();
     group_of.push_back(static_cast<std::size_t>(place) % groups);
   }
-  std::vector<std::vector<Pole>> all = groups > 1
-                                           ? shared_poles_without(decays, of_all, group_of, groups)
-                                           : std::vector<std::vector<Pole>>{};
+  std::vector<std::vector<Pole>> all = shared_poles_without(decays, of_all, group_of, groups);
+  std::vector<std::size_t> order(groups);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, std::ranges::greater{},
+                    [&](std::size_t group) { return moved_by(all[group], of_all); });
+  order.resize(std::min(groups, fitted_groups));
+  for (const std::size_t group : order) {
+    std::vector<SharingDecay> others;
+    for (std::size_t i = 0; i < decays.size(); ++i) {
+      if (group_of[i] != group) {
+        others.push_back(decays[i]);
+      }
+    }
+    all[group] = shared_poles(fit_shared_poles(others, of_all), of_all.size());
+  }
   const bool are_found = std::ranges::all_of(all, [&](const std::vector<Pole>& poles) {
     return std::ranges::all_of(poles, [&](const Pole& pole) { return neighbours.may_hold(pole); });
   });

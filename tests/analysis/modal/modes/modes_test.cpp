@@ -727,6 +727,45 @@ TEST_CASE("the band ends above the highest mode that is not weak, however soon i
   CHECK(outside.peak_hz == Approx(2500.0).epsilon(0.02));
 }
 
+TEST_CASE("the band holds low modes side by side", "[analysis][modal]") {
+  const FreeDecay decay = testing::planted_decay(
+      {{{166.0, 0.01}, 1.0}, {{294.0, 0.01}, 0.6}, {{553.0, 0.01}, 0.4}}, 16'000.0, 0.5);
+  const double highest_hz = highest_peak_hz({decay, decay, decay}, 10.0);
+  CHECK(highest_hz > 550.0);
+  CHECK(highest_hz < 720.0);
+}
+
+TEST_CASE("poles without some decays are to first order what a fit of the others gives",
+          "[analysis][modal]") {
+  core::Rng rng{12};
+  const Band around{20.0, 400.0};
+  const std::vector<Pole> planted{{100.0, 0.02}, {180.0, 0.015}};
+  std::vector<BandSpectrum> spectra;
+  for (int i = 0; i < 6; ++i) {
+    FreeDecay decay = testing::planted_decay(
+        {{planted[0], 0.5 + rng.uniform()}, {planted[1], 0.5 + rng.uniform()}}, 2000.0, 0.5);
+    testing::add_noise(decay, 30.0, rng);
+    spectra.push_back(band_spectrum(decay, around));
+  }
+  std::vector<SharingDecay> decays;
+  for (const BandSpectrum& spectrum : spectra) {
+    decays.push_back({&spectrum, {}, {}, 1.0});
+  }
+  const auto poles_of = [](const SharedFit& fit) {
+    return std::vector<Pole>{fit.decays[0].modes[0].pole, fit.decays[0].modes[1].pole};
+  };
+  const std::vector<Pole> of_all = poles_of(fit_shared_poles(decays, planted));
+  const auto without = shared_poles_without(decays, of_all, {0, 1, 2, 0, 1, 2}, 3);
+  REQUIRE(without.size() == 3);
+  const std::vector<Pole> fitted =
+      poles_of(fit_shared_poles({decays[1], decays[2], decays[4], decays[5]}, of_all));
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double moved_hz = fitted[k].frequency_hz - of_all[k].frequency_hz;
+    CHECK(without[0][k].frequency_hz - of_all[k].frequency_hz ==
+          Approx(moved_hz).epsilon(0.1).margin(1e-5));
+  }
+}
+
 namespace {
 constexpr double modulus_pa = 3e9;
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "analysis/modal/recording/impact_search.hpp"
+#include "analysis/modal/recording/sustained_sound.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -56,6 +57,7 @@ class TapFinder {
     if (found.empty()) {
       throw core::InvalidInput{refusal(0)};
     }
+    refuse_sustained(sustained_sound(recording_, found));
     return found;
   }
 
@@ -132,6 +134,16 @@ class TapFinder {
       remark(onset, "cut at the next one", fmt::format("after {:.3f} s", decay_s));
     }
     found_.taps.push_back({impact_, onset, begin, end});
+  }
+
+  void refuse_sustained(const SustainedSound& sound) const {
+    if (sound.is_sustained()) {
+      throw core::InvalidInput{
+          fmt::format("{}: holds no taps but speech, music or the like: after {} beginnings its "
+                      "sounds swell {} "
+                      "times, and they have {} different pitches",
+                      recording_.file, sound.judged, sound.swells, sound.tones)};
+    }
   }
 
   std::string refusal(std::size_t impacts) const {

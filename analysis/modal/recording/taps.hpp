@@ -45,7 +45,7 @@ struct Impact {
 // 30 ms are one. A free decay ends at the next impact, where its energy has fallen to twice the
 // noise floor, or after max_s. It begins after samples at the rails of the sensor (rail_samples),
 // if there are any. Decays below 64 samples or 20 ms are left out with a remark. Throws
-// InvalidInput with the file if none is left.
+// InvalidInput with the file if none is left, and for speech and music (sustained_sound.hpp).
 FoundTaps find_taps(const Recording& recording, const TapFinding& finding);
 // The same where the impacts are known.
 FoundTaps taps_at(const std::vector<Impact>& impacts, const Recording& recording,

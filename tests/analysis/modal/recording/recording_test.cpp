@@ -269,3 +269,93 @@ TEST_CASE("a smooth crest that the converter's steps flatten is not clipped",
   CHECK(std::ranges::count(samples, crest) > 3);
   CHECK(rail_samples(samples, 0.0).empty());
 }
+
+namespace {
+constexpr double sound_rate_hz = 16'000.0;
+
+// The sum of the harmonics of a voice or an instrument, from begin_s on, in noise.
+struct Sounded {
+  double begin_s{};
+  double duration_s{};
+  double first_hz{};
+  double last_hz{};
+  double attack_s{};
+  double brightest_hz{};  // harmonics near it are the loudest
+};
+
+Recording sounded(const std::vector<Sounded>& sounds, double duration_s) {
+  Recording recording{"sound.wav", "channel 1", sound_rate_hz, {}, {}};
+  core::Rng rng{9};
+  recording.samples.resize(static_cast<std::size_t>(duration_s * sound_rate_hz));
+  std::ranges::generate(recording.samples, [&] { return 1e-4 * rng.normal(); });
+  for (const Sounded& sound : sounds) {
+    double phase_rad = 0.0;
+    const auto begin = static_cast<std::size_t>(sound.begin_s * sound_rate_hz);
+    for (double t_s = 0.0; t_s < sound.duration_s; t_s += 1.0 / sound_rate_hz) {
+      const double pitch_hz =
+          sound.first_hz + (sound.last_hz - sound.first_hz) * t_s / sound.duration_s;
+      phase_rad += 2.0 * std::numbers::pi * pitch_hz / sound_rate_hz;
+      const double envelope = std::min(
+          {1.0, t_s / sound.attack_s, (sound.duration_s - t_s) / (0.3 * sound.duration_s)});
+      for (int k = 1; k * pitch_hz < 4000.0; ++k) {
+        const double off = (k * pitch_hz - sound.brightest_hz) / (0.4 * sound.brightest_hz);
+        recording.samples[begin + static_cast<std::size_t>(t_s * sound_rate_hz)] +=
+            0.2 * envelope / (1.0 + off * off) * std::sin(k * phase_rad);
+      }
+    }
+  }
+  return recording;
+}
+
+// Syllables of a voice whose pitch and vowel change.
+Recording speech() {
+  core::Rng rng{17};
+  std::vector<Sounded> syllables;
+  for (double at_s = 0.4; at_s < 3.6; at_s += 0.25 + 0.1 * rng.uniform()) {
+    const double pitch_hz = 100.0 + 60.0 * rng.uniform();
+    syllables.push_back({at_s, 0.2, pitch_hz, pitch_hz * (0.8 + 0.4 * rng.uniform()), 0.09,
+                         300.0 + 900.0 * rng.uniform()});
+  }
+  return sounded(syllables, 4.0);
+}
+
+// A melody of an instrument that is blown or bowed.
+Recording music() {
+  std::vector<Sounded> notes;
+  for (const int semitones : {0, 4, 7, 12, 9, 5, 2, 11, 7, 0}) {
+    const double pitch_hz = 220.0 * std::pow(2.0, semitones / 12.0);
+    notes.push_back(
+        {0.4 + 0.35 * static_cast<double>(notes.size()), 0.3, pitch_hz, pitch_hz, 0.1, pitch_hz});
+  }
+  return sounded(notes, 4.4);
+}
+}  // namespace
+
+TEST_CASE("speech and music are refused in one sentence", "[analysis][recordings]") {
+  CHECK_THROWS_WITH(find_taps(speech(), {}), Contains("sound.wav: holds no taps but speech"));
+  CHECK_THROWS_WITH(find_taps(music(), {}), Contains("sound.wav: holds no taps but speech"));
+}
+
+TEST_CASE("what rings for seconds, beats, or has a hundred modes is a tap",
+          "[analysis][recordings]") {
+  using Modes = std::vector<testing::PlantedMode>;
+  core::Rng rng{21};
+  Modes cymbal;
+  for (int i = 0; i < 100; ++i) {
+    cymbal.push_back(
+        {{300.0 * std::pow(20.0, rng.uniform()), 3e-4 + 1e-3 * rng.uniform()}, 0.2 * rng.normal()});
+  }
+  const Modes glass{{{640.0, 2e-4}, 1.0}, {{646.0, 2e-4}, -0.9}, {{1500.0, 3e-4}, 0.3}};
+  const Modes bell{{{210.0, 1e-4}, 0.6},  {{424.0, 2e-4}, 0.8}, {{508.0, 3e-4}, 0.7},
+                   {{640.0, 4e-4}, 0.5},  {{845.0, 3e-4}, 1.0}, {{1260.0, 5e-4}, 0.6},
+                   {{1700.0, 6e-4}, 0.4}, {{2250.0, 8e-4}, 0.3}};
+  const Modes foam{{{90.0, 0.25}, 1.0}, {{180.0, 0.3}, 0.5}};
+  for (const Modes& modes : {cymbal, glass, bell, foam}) {
+    CAPTURE(modes.size());
+    Recording recording = testing::planted_recording(modes, {1.0}, sound_rate_hz, 2.5, 1e-3, 3);
+    const std::vector<double> one = recording.samples;  // then a hand stops it, twice
+    recording.samples.insert(recording.samples.end(), one.begin(), one.end());
+    recording.samples.insert(recording.samples.end(), one.begin(), one.end());
+    CHECK(find_taps(recording, {}).impacts >= 3);  // a sudden stop may look like one
+  }
+}

@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <hdf5.h>
 #include <matio.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "analysis/modal/recording/sampling.hpp"
@@ -211,12 +214,64 @@ std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
   return scalar == arrays.end() ? std::nullopt
                                 : std::optional{values_of(file, *scalar, path).front()};
 }
+
+[[noreturn]] void refuse_matlab(const std::string& file) {
+  throw core::InvalidInput{
+      file + ": cannot be read as a MATLAB file (versions 4 to 7.3): is it one, or cut off?"};
+}
+
+// One of version 7.3 is HDF5, which states where it ends; matio takes a cut one for empty.
+void check_opens(const std::string& file) {
+  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (opened < 0) {
+    refuse_matlab(file);
+  }
+  H5Fclose(opened);
+}
+
+// A file of version 5 is a header and elements one after another, each with its number of bytes:
+// matio would read zeros for what is not there.
+void check_is_whole(const std::string& file) {
+  constexpr std::size_t header_bytes = 128;
+  constexpr std::size_t tag_bytes = 8;
+  std::ifstream stream{file, std::ios::binary};
+  std::array<char, header_bytes> header{};
+  if (!stream.read(header.data(), header.size())) {
+    return;
+  }
+  const std::string version{header.data() + header_bytes - 4, 4};
+  if (version == std::string{"\0\2IM", 4} || version == std::string{"\2\0MI", 4}) {
+    return check_opens(file);
+  }
+  const bool is_big_endian = version == std::string{"\1\0MI", 4};
+  if (!is_big_endian && version != std::string{"\0\1IM", 4}) {
+    return;  // of another version
+  }
+  const std::uintmax_t bytes = std::filesystem::file_size(file);
+  std::uintmax_t stated = header_bytes;
+  std::array<char, tag_bytes> tag{};
+  while (stated < bytes) {
+    std::uint32_t size = 0;
+    stream.seekg(static_cast<std::streamoff>(stated));
+    const bool is_there = static_cast<bool>(stream.read(tag.data(), tag.size()));
+    for (std::size_t i = 0; is_there && i < 4; ++i) {
+      size = size << 8 | static_cast<unsigned char>(tag.at(is_big_endian ? 4 + i : 7 - i));
+    }
+    stated += tag_bytes + size;
+  }
+  if (stated != bytes) {
+    throw core::InvalidInput{
+        fmt::format("{}: the file is cut off: {} of {} bytes are there", file, bytes, stated)};
+  }
+}
 }  // namespace
 
 Recording read_matlab_file(const std::string& file, const ReadingOptions& options) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors of version 7.3's are told once, by us
+  check_is_whole(file);
   const MatlabFile opened{Mat_Open(file.c_str(), MAT_ACC_RDONLY)};
   if (!opened) {
-    throw core::InvalidInput{file + ": cannot be read as a MATLAB file (versions 4 to 7.3)"};
+    refuse_matlab(file);
   }
   const std::vector<MatlabArray> arrays = matlab_arrays(opened.get());
   const std::vector<MatlabChannel> channels = matlab_channels(arrays);
@@ -233,11 +288,7 @@ Recording read_matlab_file(const std::string& file, const ReadingOptions& option
       0.0,
       channel_of(values_of(opened.get(), *chosen.array, file), *chosen.array, chosen.channel),
       {}};
-  if (!std::ranges::all_of(recording.samples,
-                           [](double sample) { return std::isfinite(sample); })) {
-    throw core::InvalidInput{
-        fmt::format("{}: {} has values that are not finite", file, chosen.name)};
-  }
+  check_samples(recording);
   const auto rate_hz =
       matlab_rate(opened.get(), arrays, *chosen.array, recording.samples.size(), file);
   if (!rate_hz && !(options.rate_hz > 0.0)) {

@@ -19,7 +19,6 @@
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr double largest_value = 1e100;  // squares and their sums are finite
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
   throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
 }
@@ -86,9 +85,9 @@ class Table {
                fmt::format("has {} cells, the first row {}", row.cells.size(), columns_));
       }
       const std::optional<double> value = text_.number(row.cells[column]);
-      if (!value || !(std::abs(*value) <= largest_value)) {
+      if (!value || !(std::abs(*value) <= largest_sample)) {
         refuse(file_, row.line,
-               fmt::format("'{}' is not a number up to {:g}{}", row.cells[column], largest_value,
+               fmt::format("'{}' is not a number up to {:g}{}", row.cells[column], largest_sample,
                            advice_on(row.cells[column])));
       }
       all.push_back(*value);
@@ -171,7 +170,8 @@ std::size_t data_column(const Table& table, const ReadingOptions& options,
 
 Recording read_csv_recording(std::istream& text, const std::string& file,
                              const ReadingOptions& options) {
-  std::istringstream plain{plain_table(table_text(text, file))};
+  std::vector<std::string> remarks;
+  std::istringstream plain{plain_table(whole_lines(table_text(text, file), remarks))};
   const Table table{read_csv(plain, file), file};
   if (table.rows() < min_samples) {
     refuse(file, table.last_line(),
@@ -180,7 +180,7 @@ Recording read_csv_recording(std::istream& text, const std::string& file,
   const std::optional<TimeColumn> time = time_column(table, options);
   const std::size_t column = data_column(table, options, time);
   const auto of_times_hz = time ? std::optional{rate_from_times(table, *time)} : std::nullopt;
-  Recording recording{file, table.title(column), 0.0, table.values(column), {}};
+  Recording recording{file, table.title(column), 0.0, table.values(column), std::move(remarks)};
   recording.rate_hz =
       agreed_rate(of_times_hz, options, fmt::format("{}:{}", file, time ? table.last_line() : 1),
                   "its times say", recording.remarks);

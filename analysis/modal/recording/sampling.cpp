@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr double highest_rate_hz = 1e7;        // as of --rate
@@ -133,5 +134,32 @@ double agreed_rate(std::optional<double> of_file_hz, const ReadingOptions& optio
                                   stated, *of_file_hz, options.rate_hz));
   }
   return options.rate_hz;
+}
+
+void check_samples(const Recording& recording) {
+  const std::vector<double>& samples = recording.samples;
+  if (samples.size() < min_samples) {
+    throw core::InvalidInput{fmt::format("{}: has {} samples (at least {})", recording.file,
+                                         samples.size(), min_samples)};
+  }
+  const auto impossible = std::ranges::find_if(
+      samples, [](double sample) { return !(std::abs(sample) <= largest_sample); });
+  if (impossible != samples.end()) {
+    throw core::InvalidInput{fmt::format("{}: sample {} of {} is {:g}, which is no measured value",
+                                         recording.file, impossible - samples.begin() + 1,
+                                         recording.channel, *impossible)};
+  }
+}
+
+std::string whole_lines(std::string text, std::vector<std::string>& remarks) {
+  const std::size_t last = text.rfind('\n');
+  if (last == std::string::npos || core::trimmed(text.substr(last + 1)).empty()) {
+    return text;
+  }
+  text.resize(last + 1);
+  remarks.push_back(
+      fmt::format("line {} is left out: it has no line end, so that its last number may be cut off",
+                  std::ranges::count(text, '\n') + 1));
+  return text;
 }
 }  // namespace tapstudy::analysis

@@ -23,4 +23,14 @@ double rate_of_times(const std::vector<double>& times,
 double agreed_rate(std::optional<double> of_file_hz, const ReadingOptions& options,
                    const std::string& place, const std::string& stated,
                    std::vector<std::string>& remarks);
+
+// Squares of values up to this, and their sums, are finite.
+inline constexpr double largest_sample = 1e100;
+// Throws InvalidInput for fewer than min_samples, and with its number for a sample that is not
+// finite or beyond largest_sample.
+void check_samples(const Recording& recording);
+
+// A table's text without a last line that has no line end, because nobody can tell whether its last
+// number is whole; a remark says so. A text of a single line stays as it is.
+std::string whole_lines(std::string text, std::vector<std::string>& remarks);
 }  // namespace tapstudy::analysis

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -22,6 +21,18 @@ constexpr sf_count_t frames_at_once = 65'536;
 struct Close {
   void operator()(SNDFILE* file) const { sf_close(file); }
 };
+
+std::string refusal_of_sound(const std::string& file, const std::string& why) {
+  // libsndfile's own words for a header without a rate or a channel are of its source code.
+  return why.find("SF_INFO") != std::string::npos
+             ? file +
+                   ": its header states a rate of 0, or no channel: mend it, or save the samples "
+                   "as a table and give the rate by --rate HZ"
+             : fmt::format(
+                   "{}: cannot be read as sound: {} (tables end in .csv, .txt, .tsv, .dat "
+                   "or .lvm)",
+                   file, why);
+}
 
 // "2" or "channel 2" → 1, of so many.
 int channel_from(const std::string& column, int channels, const std::string& file) {
@@ -119,9 +130,7 @@ Recording read_sound_file(const std::string& file, const ReadingOptions& options
   SF_INFO info{};
   const std::unique_ptr<SNDFILE, Close> sound{sf_open(file.c_str(), SFM_READ, &info)};
   if (sound == nullptr) {
-    throw core::InvalidInput{fmt::format(
-        "{}: cannot be read as sound: {} (tables end in .csv, .txt, .tsv, .dat or .lvm)", file,
-        sf_strerror(nullptr))};
+    throw core::InvalidInput{refusal_of_sound(file, sf_strerror(nullptr))};
   }
   check_container(file, info.format);
   if (info.frames > max_frames) {
@@ -145,15 +154,7 @@ Recording read_sound_file(const std::string& file, const ReadingOptions& options
         "is sound of a lossy format: its coder adds and removes what nobody is to hear, so weak "
         "modes and damping ratios may be the coder's (record WAV or FLAC)");
   }
-  for (std::size_t i = 0; i < recording.samples.size(); ++i) {
-    if (!std::isfinite(recording.samples[i])) {
-      throw core::InvalidInput{fmt::format("{}: sample {} is not finite", file, i + 1)};
-    }
-  }
-  if (recording.samples.size() < min_samples) {
-    throw core::InvalidInput{fmt::format("{}: has {} samples (at least {})", file,
-                                         recording.samples.size(), min_samples)};
-  }
+  check_samples(recording);
   return recording;
 }
 }  // namespace tapstudy::analysis

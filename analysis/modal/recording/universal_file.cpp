@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "analysis/modal/recording/sampling.hpp"
 #include "analysis/modal/recording/universal_records.hpp"
@@ -58,19 +57,13 @@ Recording read_universal_file(const std::string& file, const ReadingOptions& opt
   }
   const std::size_t chosen = chosen_record(records, options.column, file);
   const DataSet58& record = records[chosen];
-  if (record.samples.size() < min_samples) {
-    throw core::InvalidInput{
-        fmt::format("{}: has {} samples (at least {})", file, record.samples.size(), min_samples)};
-  }
-  if (!std::ranges::all_of(record.samples, [](double sample) { return std::isfinite(sample); })) {
-    throw core::InvalidInput{file + ": has values that are not finite"};
-  }
   Recording recording{
       file,
       record.response.empty() ? fmt::format("record {}", chosen + 1) : record.response,
       0.0,
       record.samples,
       {}};
+  check_samples(recording);
   const double rate_hz = record.increment > 0.0 ? 1.0 / record.increment : 0.0;
   recording.rate_hz = agreed_rate(rate_hz, options, file, "says", recording.remarks);
   return recording;

@@ -18,6 +18,7 @@ namespace tapstudy::analysis {
 namespace {
 constexpr std::size_t header_records = 11;
 constexpr const char* end_of_set = "-1";
+constexpr std::size_t max_universal_values = 100'000'000;
 
 std::vector<std::string> fields_of(const std::string& record) {
   std::istringstream stream{record};
@@ -62,12 +63,13 @@ class UniversalReader {
         continue;
       }
       const std::string kind = next_line().value_or("");
+      const int begins = line_;
       if (core::trimmed(kind) == "58") {
         sets.push_back(data_set(std::nullopt));
       } else if (core::trimmed(kind).starts_with("58b")) {
         sets.push_back(data_set(layout_of(kind)));
       }
-      skip_to_end();
+      skip_to_end(begins);
     }
     return sets;
   }
@@ -88,10 +90,16 @@ class UniversalReader {
     return line;
   }
 
-  void skip_to_end() {
-    for (auto line = next_line(); line && core::trimmed(*line) != end_of_set;) {
-      line = next_line();
+  void skip_to_end(int begins) {
+    while (const auto line = next_line()) {
+      if (core::trimmed(*line) == end_of_set) {
+        return;
+      }
     }
+    refuse_record(
+        fmt::format("the file is cut off: the data set that begins in line {} has no end "
+                    "(-1)",
+                    begins));
   }
 
   BinaryLayout layout_of(const std::string& kind) const {
@@ -136,6 +144,9 @@ class UniversalReader {
     const std::vector<std::string> form = record();
     set.value_type = field<int>(form, 0, "type of values");
     set.values = field<std::size_t>(form, 1, "number of values");
+    if (set.values > max_universal_values) {
+      refuse_record(fmt::format("states {} values (at most {})", set.values, max_universal_values));
+    }
     set.is_even = field<int>(form, 2, "spacing") == 1;
     set.first = field<double>(form, 3, "first abscissa");
     set.increment = field<double>(form, 4, "increment");

@@ -92,8 +92,8 @@ FrequencyResponses read_responses(const std::vector<std::string>& files,
   FrequencyResponses all;
   std::vector<ReadResponse> read;
   for (const std::string& file : files) {
-    std::vector<ReadResponse> of_file =
-        is_universal(file) ? universal_responses(file, all.remarks) : responses_of_table(file);
+    std::vector<ReadResponse> of_file = is_universal(file) ? universal_responses(file, all.remarks)
+                                                           : responses_of_table(file, all.remarks);
     for (ReadResponse& response : of_file) {
       if (response.frequency_hz.size() < min_response_lines) {
         throw core::InvalidInput{fmt::format("{}: {} has {} frequencies (at least {})",

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <sstream>
 
+#include "analysis/modal/recording/sampling.hpp"
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
@@ -51,12 +53,17 @@ std::optional<Column> column_of(const std::string& header) {
 
 class ResponseTable {
  public:
-  explicit ResponseTable(const std::string& file) : file_{file} {
+  ResponseTable(const std::string& file, std::vector<std::string>& remarks) : file_{file} {
     std::ifstream stream{file};
     if (!stream) {
       throw core::InvalidInput{file + ": cannot be read"};
     }
-    text_ = read_csv(stream, file);
+    std::vector<std::string> of_text;
+    std::istringstream whole{whole_lines(table_text(stream, file), of_text)};
+    for (const std::string& remark : of_text) {
+      remarks.push_back(file + ": " + remark);
+    }
+    text_ = read_csv(whole, file);
     if (text_.rows.size() < 2) {
       refuse_table(file_, 1, "holds no values");
     }
@@ -190,7 +197,8 @@ bool is_table_of_responses(const std::string& file) {
   return false;
 }
 
-std::vector<ReadResponse> responses_of_table(const std::string& file) {
-  return ResponseTable{file}.responses();
+std::vector<ReadResponse> responses_of_table(const std::string& file,
+                                             std::vector<std::string>& remarks) {
+  return ResponseTable{file, remarks}.responses();
 }
 }  // namespace tapstudy::analysis

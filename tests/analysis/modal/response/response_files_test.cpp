@@ -154,6 +154,17 @@ TEST_CASE("spectra and coherences beside responses are left out and told",
                     Contains("no frequency response") && Contains("coherence"));
 }
 
+TEST_CASE("a last line of responses that has no line end is left out and named",
+          "[analysis][responses][formats]") {
+  const FrequencyResponses planted = few_lines();
+  const std::string table = table_of(planted, false);
+  const FrequencyResponses read =
+      read_text({"a.csv", table.substr(0, table.size() - 3)}, planted.kind);
+  CHECK(read.values.rows() == planted.values.rows() - 1);
+  REQUIRE(read.remarks.size() == 1);
+  CHECK_THAT(read.remarks.front(), Contains("a.csv: line 32 is left out"));
+}
+
 TEST_CASE("responses that cannot be told are refused in one sentence",
           "[analysis][responses][formats]") {
   const FrequencyResponses planted = few_lines();

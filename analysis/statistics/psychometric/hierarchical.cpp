@@ -144,6 +144,12 @@ class Population {
     return before;
   }
 
+  // Climbs from here on as from there, of the same people.
+  void start_as(const Population& other) {
+    positions_ = other.positions_;
+    slopes_ = other.slopes_;
+  }
+
   // A person's probability of each cell.
   Eigen::VectorXd of_person(std::size_t i) const {
     Eigen::VectorXd probabilities =
@@ -181,7 +187,11 @@ class Population {
 // One end of the profile interval on the axis; infinite where the grid does not hold it.
 double profile_end(const Population& fitted, double most, double limit, double direction) {
   Population at = fitted;
-  const auto excess = [&](double mean) { return 2.0 * (most - at.climb(mean)) - limit; };
+  // Always from the maximum: a climb from where the last one ended may end on another hill.
+  const auto excess = [&](double mean) {
+    at.start_as(fitted);
+    return 2.0 * (most - at.climb(mean)) - limit;
+  };
   const GridAxis& axis = fitted.grid().position;
   double inside = fitted.positions().mean;
   double step = std::max(axis.cell(), fitted.positions().deviation / std::sqrt(at.count()));

@@ -9,6 +9,7 @@
 
 #include "analysis/statistics/population/means.hpp"
 #include "core/error.hpp"
+#include "core/random/rng.hpp"
 #include "support/reference_programs.hpp"
 using namespace tapstudy;
 using analysis::fit_population;
@@ -54,6 +55,31 @@ TEST_CASE("of people who have answered much, the population has their t interval
   for (std::size_t i = 0; i < people.size(); ++i) {
     CHECK(std::log10(fit->people[i].threshold) == Approx(positions[i]).margin(0.02));
   }
+}
+
+// Of few answers the likelihood has several hills, between which the interval's end was looked for.
+TEST_CASE("three people who answer little have an interval around their threshold",
+          "[analysis][psychometric]") {
+  const PsychometricModel model{PsychometricShape::weibull, {0.5, 0.5}, {0.0, 0.1}};
+  core::Rng rng{GENERATE(16U, 22U)};
+  Answers people(3);
+  for (std::vector<Level>& levels : people) {
+    const double threshold = rng.log_normal(1.0, 0.4);
+    for (int step = -2; step <= 2; ++step) {
+      const double value = std::pow(10.0, 0.25 * step);
+      const double p =
+          core::proportion(PsychometricShape::weibull, value, threshold, 2.0, 0.5, 0.02);
+      analysis::Proportion of;
+      for (int i = 0; i < 8; ++i) {
+        of.add(rng.uniform() < p);
+      }
+      levels.push_back({value, of});
+    }
+  }
+  const auto fit = fit_population(model, people);
+  REQUIRE(fit);
+  CHECK(fit->interval.low < fit->threshold);
+  CHECK(fit->interval.high > fit->threshold);
 }
 
 // Integrated over a finer and wider grid, and climbed by another rule.

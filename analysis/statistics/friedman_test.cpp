@@ -81,10 +81,12 @@ std::optional<std::map<RankSums, double>> distribution_of_sums(const std::vector
   return sums;
 }
 
-double random_sum_of_squares(std::vector<Ranks> people, std::uint64_t seed) {
+double random_sum_of_squares(const std::vector<Ranks>& people, std::uint64_t seed) {
   core::Rng rng{seed};
   Ranks sums(people.front().size(), 0);
-  for (Ranks& ranks : people) {
+  Ranks ranks;
+  for (const Ranks& own : people) {
+    ranks = own;
     rng.shuffle(ranks);
     add_to(sums, ranks);
   }

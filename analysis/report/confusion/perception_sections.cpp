@@ -202,19 +202,17 @@ ReportTable similarities_table(const std::vector<Item>& classes, const Similarit
 }
 
 ReportTable fit_table(const CountTable& square, const SimilarityChoice& model) {
-  ReportTable table{
-      "similarity_fit",
-      "Fit of the similarity-choice model",
-      {column("G²", "g_squared"), column("df", "degrees_of_freedom"),
-       column("p (answers independent)", "p"), column("", "draws"), column("", "asymptotic_p")}};
+  ReportTable table{"similarity_fit",
+                    "Fit of the similarity-choice model",
+                    {column("G²", "g_squared"), column("df", "degrees_of_freedom"),
+                     column("p (answers independent)", "p"), column("", "draws")}};
   std::vector<Cell>& row = table.rows.emplace_back(
       std::vector{number(model.g_squared), count(model.degrees_of_freedom)});
   if (model.degrees_of_freedom > 0) {
     const ConditionalFit fit = conditional_fit(square, model, similarity_seed);
-    row.insert(row.end(), {probability(fit.p), count(fit.draws), probability(model.p)});
+    row.insert(row.end(), {probability(fit.p), count(fit.draws)});
   } else {
-    row.insert(row.end(),
-               {nothing(table.columns[2], "no freedom left"), count(0), nothing(table.columns[4])});
+    row.insert(row.end(), {nothing(table.columns[2], "no freedom left"), count(0)});
   }
   return table;
 }

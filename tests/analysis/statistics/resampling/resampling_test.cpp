@@ -49,6 +49,7 @@ TEST_CASE("a random table has the totals of its pattern", "[analysis][resampling
       const TableTotals drawn = totals_of(random_table(totals, rng));
       CHECK(drawn.rows == totals.rows);
       CHECK(drawn.columns == totals.columns);
+      CHECK(totals_of(sum_of_random_tables({totals, totals, totals}, rng)).all == 3 * totals.all);
     }
   }
 }

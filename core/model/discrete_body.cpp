@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/model/element_order.hpp"
-#include "core/model/mesh/tetgen_mesher.hpp"
+#include "core/model/mesh/wanted_order.hpp"
 #include "core/model/progress.hpp"
 namespace tapstudy::core {
 DiscreteBody discretised(const Plate& plate, const Material& material, const MeshSize& size,
@@ -15,7 +15,9 @@ DiscreteBody discretised(const Plate& plate, const Material& material, const Mes
   tell(progress, "meshing");
   std::vector<Fixation> all_regions = plate.fixations;
   all_regions.insert(all_regions.end(), regions.begin(), regions.end());
-  body.mesh = mesh_shape(plate.shape, size, points_to_mesh(all_regions, plate.shape));
+  body.mesh = mesh_shape(
+      plate.shape, size, points_to_mesh(all_regions, plate.shape),
+      plate.mesh.order == chosen_order ? WantedOrder::quadratic_if_small : WantedOrder::linear);
   if (plate.mesh.order != 1) {
     TetMesh quadratic = to_quadratic(body.mesh);
     if (plate.mesh.order >= 2 || 3 * quadratic.nodes_m.rows() <= max_chosen_dofs) {

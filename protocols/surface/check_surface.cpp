@@ -130,7 +130,7 @@ void check_volume(const TriangleSurface& surface, const Mesh& mesh) {
   const double volume = volume_m3(surface);
   const double cube = std::pow(bounds(surface).size_m().maxCoeff(), 3);
   if (!(std::abs(volume) > no_volume * cube)) {
-    throw InvalidInput{fmt::format("surface: it encloses no volume ({:.3g} m³)", volume)};
+    throw SurfaceFault{fmt::format("surface: it encloses no volume ({:.3g} m³)", volume)};
   }
   if (!pmp::is_outward_oriented(mesh)) {
     throw SurfaceFault{"surface: its triangles face inward (reverse the orientation of all)"};

@@ -21,7 +21,7 @@ void check_count(const core::TriangleSurface& surface);
 // self-intersections: finite points, non-degenerate triangles, every edge shared by two triangles
 // in opposite directions, normals outward, one shell, no intersecting or overlapping triangles,
 // between a millimetre and ten metres wide.
-// Throws SurfaceFault, or InvalidInput for a wrong size and where no volume is enclosed, stating
-// which condition is violated, and where.
+// Throws SurfaceFault, or InvalidInput for a wrong size, stating which condition is violated, and
+// where.
 void check_surface(const core::TriangleSurface& surface);
 }  // namespace tapstudy::protocols

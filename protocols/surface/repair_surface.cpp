@@ -13,6 +13,7 @@
 
 #include "core/error.hpp"
 #include "core/geometry/triangle_tree.hpp"
+#include "core/model/mesh/wanted_order.hpp"
 #include "core/model/shape/shape.hpp"
 #include "protocols/surface/check_surface.hpp"
 #include "protocols/surface/join_points.hpp"
@@ -228,15 +229,15 @@ TriangleSurface simplified_to(const TriangleSurface& surface, int max_triangles)
 }
 
 void simplify(const RepairRequest& request, SurfaceRepair& repair) {
-  if (!request.max_triangles || repair.surface.triangles.rows() <= *request.max_triangles) {
-    return;
-  }
-  repair.surface = simplified_to(repair.surface, *request.max_triangles);
-  if (request.wrap_m && !repair.wrap_offset_m && refusal_of(repair.surface)) {
-    wrap(repair.surface, request, repair);
-    simplify(request, repair);
+  if (request.max_triangles && repair.surface.triangles.rows() > *request.max_triangles) {
+    repair.surface = simplified_to(repair.surface, *request.max_triangles);
   }
 }
+
+bool can_be_modelled(const TriangleSurface& surface) {
+  return !refusal_of(surface) && core::can_be_meshed(core::Solid{surface});
+}
+
 [[noreturn]] void refuse_result(const std::string& why, const RepairRequest& request) {
   const RepairTerms& terms = *request.terms;
   const std::string advice =
@@ -258,6 +259,10 @@ SurfaceRepair repair_surface(const TriangleSurface& surface, const RepairRequest
     close(joined, request, repair);
   }
   simplify(request, repair);
+  if (request.wrap_m && !repair.wrap_offset_m && !can_be_modelled(repair.surface)) {
+    wrap(repair.surface, request, repair);
+    simplify(request, repair);
+  }
   repair.surface = reread(repair.surface);
   check_count(repair.surface);
   if (const auto refusal = refusal_of(repair.surface)) {

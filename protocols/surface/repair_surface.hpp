@@ -51,7 +51,7 @@ struct SurfaceRepair {
 
 // What passes check_surface is returned as it is, if it has few enough triangles. All else is
 // joined and mended, wrapped where that was asked for and mending did not do, then simplified; and
-// wrapped, where that was asked for, if once simplified it runs through itself.
+// wrapped, where that was asked for, if in the end it runs through itself or the mesher fails.
 // Throws SurfaceFault, with what to try, where the result would still be refused, and ModelError
 // where CGAL cannot do it.
 SurfaceRepair repair_surface(const core::TriangleSurface& surface, const RepairRequest& request);

@@ -268,8 +268,7 @@ std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
       lines += fmt::format(
           "  warning: {} has linear elements, as quadratic ones would have more than {} unknowns: "
           "its frequencies may be far too high (of a box mesh: auto; fewer elements: a surface of "
-          "fewer triangles, mesh: radius_edge_ratio: 2 or a larger max_tet_volume_m3; or order: 2, "
-          "if time and memory allow)\n",
+          "fewer triangles or a larger max_tet_volume_m3; or order: 2, if time and memory allow)\n",
           name_of(stimulus, i), core::max_chosen_dofs);
     }
   }
@@ -283,9 +282,8 @@ std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
     const core::RadiusEdgeRatio& ratio = report.bodies[i].radius_edge_ratio;
     if (ratio.is_relaxed()) {
       lines += fmt::format(
-          "  note: {} is meshed with radius_edge_ratio: {}, as {} would take more than {:.0g} "
-          "tetrahedra\n",
-          name_of(stimulus, i), ratio.used, ratio.asked, core::max_tets);
+          "  note: {} is meshed with radius_edge_ratio: {}, as {} takes too many elements\n",
+          name_of(stimulus, i), ratio.used, ratio.asked);
     }
   }
   return lines;

@@ -273,10 +273,10 @@ void say_what_is_missing(const RenderedStudy& study, ReportSection& section) {
   }
   for (const RenderedStimulus& stimulus : study.stimuli) {
     if (stimulus.model && !stimulus.model->relaxed_radius_edge_ratio.empty()) {
-      section.remarks.push_back(fmt::format(
-          "The mesh of {} has a radius-edge ratio of {}, as that would have taken too many "
-          "tetrahedra.",
-          stimulus.label, stimulus.model->relaxed_radius_edge_ratio));
+      section.remarks.push_back(
+          fmt::format("The mesh of {} has a radius-edge ratio of {}, as that takes too many "
+                      "elements.",
+                      stimulus.label, stimulus.model->relaxed_radius_edge_ratio));
     }
     if (stimulus.model && !stimulus.model->dropped.empty()) {
       section.remarks.push_back(fmt::format(

@@ -101,6 +101,9 @@ std::string tetrahedralised(const std::string& packed_input) {
   } catch (const std::bad_alloc&) {
     throw ModelError{"mesh: not enough memory for so many tetrahedra"};
   }
+  if (out.numberoftetrahedra <= 0) {
+    throw ModelError{"mesh: TetGen found no inside of the body"};
+  }
   PackedBytes bytes;
   bytes.put(std::span{out.pointlist, 3 * static_cast<std::size_t>(out.numberofpoints)});
   bytes.put(std::span{out.tetrahedronlist, 4 * static_cast<std::size_t>(out.numberoftetrahedra)});

@@ -17,8 +17,8 @@ struct TetgenOutput {
 };
 
 // More Steiner points than these are refused: bounds refinement that may not end on a bad surface.
-// A mesh has two tetrahedra and more to a node, so that these are more than max_tets.
-inline constexpr int max_added_points = 150000;
+// Of so many there are four tetrahedra and more to a node, and these are more than max_tets.
+inline constexpr int max_added_points = 75000;
 
 // Runs TetGen in a process of its own, for it crashes or hangs on some surfaces. Throws ModelError.
 TetgenOutput run_tetgen(const TetgenInput& input);

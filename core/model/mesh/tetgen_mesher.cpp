@@ -12,7 +12,9 @@
 
 #include "core/error.hpp"
 #include "core/model/cubic_elements.hpp"
+#include "core/model/element_order.hpp"
 #include "core/model/mesh/tetgen_job.hpp"
+#include "core/model/mesh/wanted_order.hpp"
 #include "core/model/shape/shape.hpp"
 namespace tapstudy::core {
 // The six faces of a box as polygons over a list of points: the mesher's input, such that given
@@ -241,32 +243,73 @@ TetMesh mesh_from(const TetgenOutput& output, const Thickening& thickening,
   return mesh;
 }
 
-std::string tetgen_switches(const MeshSize& size) {
-  std::string switches = fmt::format("pq{}QS{}", size.radius_edge_ratio, max_added_points);
+// One run of TetGen: what it is asked for, and what its mesh may have at most.
+struct Run {
+  double ratio{};
+  int most_added{max_added_points};
+  bool is_for_quadratic{false};  // of max_chosen_dofs unknowns
+};
+
+std::string tetgen_switches(const MeshSize& size, const Run& run) {
+  std::string switches = fmt::format("pq{}QS{}", run.ratio, run.most_added);
   if (size.max_tet_volume_m3) {
     switches += fmt::format("a{:.24f}", *size.max_tet_volume_m3 * size.flattening);
   }
   return switches;
 }
 
-bool has_too_many(const TetgenInput& input, const TetgenOutput& output) {
+bool has_too_many(const TetgenInput& input, const TetgenOutput& output, const Run& run) {
   const std::size_t added = (output.coordinates.size() - input.coordinates.size()) / 3;
-  return added >= max_added_points || static_cast<double>(output.corners.size()) > 4.0 * max_tets;
+  return added >= static_cast<std::size_t>(run.most_added) ||
+         static_cast<double>(output.corners.size()) > 4.0 * max_tets;
 }
 
+bool is_small_enough(const TetMesh& mesh, const Run& run) {
+  return !run.is_for_quadratic || 3 * to_quadratic(mesh).nodes_m.rows() <= max_chosen_dofs;
+}
+
+// Whether the triangles alone do not ask for more; of surfaces whose nodes all lie on them there
+// are as many tetrahedra to a triangle, and more.
+bool may_have_at_most(double tets, const Solid& solid) {
+  constexpr double tets_per_triangle = 4.0;
+  return tets_per_triangle * static_cast<double>(solid.surface().triangles.rows()) < tets;
+}
+
+constexpr std::array relaxed_ratios{2.0, 8.0, 40.0};
+// In place of max_added_points, where quadratic elements are wanted: two tetrahedra to a node.
+constexpr int few_added_points = 20'000;
+
 // The bounds of the radius-edge ratio to try in turn: those beyond the first ask for fewer elements
-// round small triangles. A box has none, nor do they help where the triangles alone are too many.
+// round small triangles, the last ones round long and narrow ones. A box has none, nor do they help
+// where the triangles alone are too many.
 std::vector<double> ratios_to_try(const Shape& shape, const MeshSize& size) {
-  constexpr std::array relaxed{2.0, 4.0};
-  constexpr double tets_per_triangle = 4.0;  // of surfaces whose nodes all lie on them, and more
   std::vector<double> ratios{size.radius_edge_ratio};
   const auto* const solid = std::get_if<Solid>(&shape);
-  if (solid != nullptr &&
-      tets_per_triangle * static_cast<double>(solid->surface().triangles.rows()) < max_tets) {
-    std::ranges::copy_if(relaxed, std::back_inserter(ratios),
+  if (solid != nullptr && may_have_at_most(max_tets, *solid)) {
+    std::ranges::copy_if(relaxed_ratios, std::back_inserter(ratios),
                          [&](double ratio) { return ratio > size.radius_edge_ratio; });
   }
   return ratios;
+}
+
+// Quadratic elements of a larger ratio err less than linear ones, and take less time. Where no
+// ratio has few enough, linear ones of the last do: the others take as many as stop a run.
+std::vector<Run> runs_for(const Shape& shape, const MeshSize& size, WantedOrder wanted) {
+  constexpr double most_quadratic_tets = max_chosen_dofs / 4.0;
+  const auto* const solid = std::get_if<Solid>(&shape);
+  const std::vector<double> ratios = ratios_to_try(shape, size);
+  std::vector<Run> runs;
+  if (wanted == WantedOrder::quadratic_if_small && solid != nullptr && !size.max_tet_volume_m3 &&
+      may_have_at_most(most_quadratic_tets, *solid)) {
+    std::ranges::transform(ratios, std::back_inserter(runs), [](double ratio) {
+      return Run{ratio, few_added_points, true};
+    });
+    runs.push_back({ratios.back()});
+  } else {
+    std::ranges::transform(ratios, std::back_inserter(runs),
+                           [](double ratio) { return Run{ratio}; });
+  }
+  return runs;
 }
 
 std::string command_for(const Shape& shape) {
@@ -303,33 +346,59 @@ std::string advice_for(const Shape& shape, const MeshSize& size) {
                   advice_for(shape, size))};
 }
 
-// TetGen's message, with the command that simplifies the surface.
-TetgenOutput tetrahedra_of(const TetgenInput& input, const Shape& shape) {
-  try {
-    return run_tetgen(input);
-  } catch (const ModelError& error) {
-    throw ModelError{error.what() + command_for(shape)};
+// Unset: it has too many elements.
+std::optional<TetMesh> mesh_by(const Run& run, TetgenInput& input, const MeshSize& size,
+                               const Thickening& thickening) {
+  input.switches = tetgen_switches(size, run);
+  const TetgenOutput output = run_tetgen(input);
+  if (has_too_many(input, output, run)) {
+    return std::nullopt;
   }
+  TetMesh mesh = mesh_from(output, thickening, {size.radius_edge_ratio, run.ratio});
+  return is_small_enough(mesh, run) ? std::optional{std::move(mesh)} : std::nullopt;
 }
 }  // namespace
 
-TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<Vec3>& points_m) {
+TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<Vec3>& points_m,
+                   WantedOrder wanted) {
   check_count(shape, size);
   const Thickening thickening{bounds(shape).low_m, size.flattening};
   const auto* const box = std::get_if<Box>(&shape);
   TetgenInput input = box != nullptr
                           ? input_for(outline(*box, points_m, bounds(shape).snap_m()), thickening)
                           : input_for(std::get<Solid>(shape).surface(), thickening);
-  const std::vector<double> ratios = ratios_to_try(shape, size);
-  for (const double ratio : ratios) {
-    MeshSize tried = size;
-    tried.radius_edge_ratio = ratio;
-    input.switches = tetgen_switches(tried);
-    const TetgenOutput output = tetrahedra_of(input, shape);
-    if (!has_too_many(input, output)) {
-      return mesh_from(output, thickening, {size.radius_edge_ratio, ratio});
+  const std::vector<Run> runs = runs_for(shape, size, wanted);
+  std::string failure;
+  // What makes TetGen fail does so with the next ratio, too, as a rule, but not with all.
+  const auto next = [&](std::size_t i) {
+    return failure.empty() ? i + 1 : std::max(i + 1, runs.size() - 1);
+  };
+  for (std::size_t i = 0; i < runs.size(); i = next(i)) {
+    try {
+      if (auto mesh = mesh_by(runs[i], input, size, thickening)) {
+        return *std::move(mesh);
+      }
+    } catch (const ModelError& error) {
+      failure = error.what();
     }
   }
-  refuse_count(shape, size, ratios.back());
+  if (!failure.empty()) {
+    throw ModelError{failure + command_for(shape)};
+  }
+  refuse_count(shape, size, runs.back().ratio);
+}
+
+bool can_be_meshed(const Solid& body) {
+  const Thickening thickening{bounds(body).low_m, 1.0};
+  TetgenInput input = input_for(body.surface(), thickening);
+  try {
+    return mesh_by({relaxed_ratios.back(), few_added_points}, input, {}, thickening).has_value();
+  } catch (const ModelError&) {
+    return false;
+  }
+}
+
+TetMesh mesh_shape(const Shape& shape, const MeshSize& size, const std::vector<Vec3>& points_m) {
+  return mesh_shape(shape, size, points_m, WantedOrder::linear);
 }
 }  // namespace tapstudy::core

@@ -2,12 +2,15 @@
 #include <map>
 
 #include "core/error.hpp"
+#include "core/model/element_order.hpp"
 #include "core/model/elements/assembly.hpp"
 #include "core/model/fixation.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
+#include "core/model/mesh/wanted_order.hpp"
 #include "core/model/modes/modal_solver.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
+#include "support/sharp_fins.hpp"
 #include "support/surfaces.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -190,4 +193,14 @@ TEST_CASE(
   const core::RadiusEdgeRatio usual = core::mesh_shape(ball, {}).radius_edge_ratio;
   CHECK(usual.asked == core::MeshSize{}.radius_edge_ratio);
   CHECK_FALSE(usual.is_relaxed());
+}
+
+TEST_CASE("a surface has the smallest ratio with which quadratic elements are few enough",
+          "[core][mesh][slow]") {
+  const core::Shape finned = core::Solid{testing::sharp_fins(1, 2e-5)};
+  const core::TetMesh mesh =
+      core::mesh_shape(finned, {}, {}, core::WantedOrder::quadratic_if_small);
+  CHECK(mesh.radius_edge_ratio.used == 8.0);
+  CHECK(3 * core::to_quadratic(mesh).nodes_m.rows() <= core::max_chosen_dofs);
+  CHECK(core::volume_m3(mesh) == Approx(core::volume_m3(finned)).epsilon(1e-9));
 }

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
-#include "core/model/mesh/tetgen_mesher.hpp"
+#include "core/model/mesh/wanted_order.hpp"
 #include "core/model/shape/shape.hpp"
 #include "protocols/reader/earlier_defaults.hpp"
 #include "protocols/surface/check_surface.hpp"
@@ -16,6 +16,7 @@
 #include "protocols/surface/repaired_surface.hpp"
 #include "protocols/surface/surface_file.hpp"
 #include "support/catch.hpp"
+#include "support/sharp_fins.hpp"
 #include "support/surfaces.hpp"
 #include "support/texts.hpp"
 using namespace tapstudy;
@@ -286,6 +287,28 @@ TEST_CASE("a surface that the mesher cannot fill is refused with the command tha
       testing::box_surface({0.03, 0.01, 0.03}));  // as only a fault of check_surface lets through
   const core::Shape body = core::Solid{crossing, "tapstudy repair this"};
   CHECK_THROWS_WITH(core::mesh_shape(body, {}), Contains("; try: tapstudy repair this"));
+}
+
+TEST_CASE("what the mesher cannot fill is wrapped where that is asked for",
+          "[protocols][surface][repair][slow]") {
+  const core::TriangleSurface finned = as_it_is_read(testing::sharp_fins(16, 1e-5));
+  REQUIRE_NOTHROW(protocols::check_surface(finned));
+  CHECK_FALSE(protocols::repair_surface(finned, {}).wrap_offset_m);
+  const protocols::SurfaceRepair repair =
+      protocols::repair_surface(finned, {.wrap_m = 0.02, .max_triangles = 1000});
+  CHECK(repair.wrap_offset_m);
+  CHECK_NOTHROW(core::mesh_shape(core::Solid{repair.surface}, {}));
+}
+
+TEST_CASE("a closed surface without volume is wrapped into a skin",
+          "[protocols][surface][repair]") {
+  constexpr double side_m = 0.02;
+  const core::TriangleSurface flat = as_it_is_read(testing::surface_of(
+      {{0.0, 0.0, 0.0}, {side_m, 0.0, 0.0}, {side_m, side_m, 0.0}, {0.0, side_m, 0.0}},
+      {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}));
+  CHECK_THROWS_AS(protocols::check_surface(flat), protocols::SurfaceFault);
+  CHECK_THROWS_WITH(protocols::check_surface(flat), Contains("no volume"));
+  CHECK(protocols::repair_surface(flat, {.wrap_m = 0.002}).wrap_offset_m);
 }
 
 TEST_CASE("a flat-sided body keeps its volume when it is simplified",

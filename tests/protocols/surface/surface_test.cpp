@@ -681,6 +681,6 @@ TEST_CASE("a mesh that would be too large is refused with what would help, not w
           "[protocols][surface][slow]") {
   const core::Shape sheet = core::Solid{testing::box_surface({1.0, 1.0, 0.002})};
   CHECK_THROWS_WITH(core::mesh_shape(sheet, {}, {}),
-                    Contains("also with mesh.radius_edge_ratio: 4 in place of 1.414") &&
+                    Contains("also with mesh.radius_edge_ratio: 40 in place of 1.414") &&
                         Contains("mesh.flattening") && !Contains("larger than"));
 }

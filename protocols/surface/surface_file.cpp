@@ -124,7 +124,9 @@ SurfaceSoup soup_of(const SurfaceSource& source) {
     return read_stl(source.file, source.bytes);
   }
   if (source.bytes.starts_with("\xFF\xFE") || source.bytes.starts_with("\xFE\xFF")) {
-    throw core::InvalidInput{source.file + ": its text is UTF-16 (save it as UTF-8)"};
+    throw core::InvalidInput{
+        fmt::format("{0}: its text is UTF-16. Convert it: iconv -f UTF-16 -t UTF-8 {0} > body{1}",
+                    source.file, ending)};
   }
   if (ending == ".ply") {
     return read_ply(source.file, source.bytes);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -77,19 +78,40 @@ Eigen::Vector2d nearest_on_segment(const Eigen::Vector2d& from, const Eigen::Vec
   return from + std::clamp(share, 0.0, 1.0) * along;
 }
 
-// Outside the shadow of a surface its nearest point lies on some triangle's edge.
-Eigen::Vector2d nearest_on_outline(const TriangleSurface& surface, const Eigen::Vector2d& point) {
+using ShadowCorners = std::array<Eigen::Vector2d, 3>;
+
+ShadowCorners shadow_of(const TriangleSurface& surface, Eigen::Index triangle) {
+  ShadowCorners corners;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    corners.at(k) =
+        surface.points_m.row(surface.triangles(triangle, static_cast<Eigen::Index>(k))).head<2>();
+  }
+  return corners;
+}
+
+bool is_upright(const ShadowCorners& shadow) {
+  constexpr double no_area = 1e-6;
+  const Eigen::Vector2d a = shadow[1] - shadow[0];
+  const Eigen::Vector2d b = shadow[2] - shadow[0];
+  return !(std::abs(a.x() * b.y() - a.y() * b.x()) >
+           no_area * std::max(a.squaredNorm(), b.squaredNorm()));
+}
+
+// Outside the shadow of a surface its nearest point lies on some triangle's edge; a little further
+// in, so that it is in the shadow with the digits that are printed, too.
+Eigen::Vector2d nearest_in_shadow(const TriangleSurface& surface, const Eigen::Vector2d& point) {
+  constexpr double inward = 0.05;
   Eigen::Vector2d nearest{HUGE_VAL, HUGE_VAL};
   double least = HUGE_VAL;
   for (Eigen::Index i = 0; i < surface.triangles.rows(); ++i) {
-    for (Eigen::Index edge = 0; edge < 3; ++edge) {
-      const auto corner = [&](Eigen::Index k) -> Eigen::Vector2d {
-        return surface.points_m.row(surface.triangles(i, k % 3)).head<2>();
-      };
-      const Eigen::Vector2d on_edge = nearest_on_segment(corner(edge), corner(edge + 1), point);
+    const ShadowCorners shadow = shadow_of(surface, i);
+    for (std::size_t k = 0; !is_upright(shadow) && k < shadow.size(); ++k) {
+      const Eigen::Vector2d on_edge =
+          nearest_on_segment(shadow.at(k), shadow.at((k + 1) % shadow.size()), point);
       if ((on_edge - point).squaredNorm() < least) {
         least = (on_edge - point).squaredNorm();
-        nearest = on_edge;
+        const Eigen::Vector2d centre = (shadow[0] + shadow[1] + shadow[2]) / 3.0;
+        nearest = on_edge + inward * (centre - on_edge);
       }
     }
   }
@@ -99,8 +121,8 @@ Eigen::Vector2d nearest_on_outline(const TriangleSurface& surface, const Eigen::
 
 std::string TopHeight::describe_touchable(const Eigen::Vector2d& sideways_m) const {
   if (triangles_) {
-    const Eigen::Vector2d nearest = nearest_on_outline(triangles_->surface(), sideways_m);
-    return fmt::format("seen from above its nearest place is ({:.4g}, {:.4g})", nearest.x(),
+    const Eigen::Vector2d nearest = nearest_in_shadow(triangles_->surface(), sideways_m);
+    return fmt::format("seen from above its nearest place is ({:.6g}, {:.6g})", nearest.x(),
                        nearest.y());
   }
   return fmt::format("x from {:.4g} to {:.4g} m, y from {:.4g} to {:.4g} m", bounds_.low_m.x(),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include "core/error.hpp"
@@ -202,7 +203,8 @@ TEST_CASE("an OBJ that is none is refused with its line and what is there",
   refused("v 0 0 0\nv 1 0 0\nl 1 2\n", "holds 2 points (v), 1 lines (l) and no face (f)");
   refused("v 0 0\n", "body.obj:1: a point (v) of 2 numbers");
   refused("v 0 0 0\nv 1,5 0 0\n", "body.obj:2: '1,5' has a decimal comma");
-  refused(std::string{"\xFF\xFEv\0 \0", 6}, "its text is UTF-16 (save it as UTF-8)");
+  refused(std::string{"\xFF\xFEv\0 \0", 6},
+          "its text is UTF-16. Convert it: iconv -f UTF-16 -t UTF-8 ");
   refused("v 0 0 0 0\n", "weight 0");
   refused("v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 \\\n 4\n",
           "body.obj:5: a face (f) with the corner '4' (3 points so far)");
@@ -674,7 +676,12 @@ TEST_CASE("a surface is turned about its vector, then moved; beside it is its ne
   const core::TopHeight top{solid("offset_m: [0, 0, 0]")};
   const Eigen::Vector2d beside{usual.high_m.x() + 1.0, 0.0};
   REQUIRE_FALSE(top.at_m(beside));
-  CHECK_THAT(top.describe_touchable(beside), Contains("nearest place is ("));
+  const std::string words = top.describe_touchable(beside);
+  Eigen::Vector2d named{};
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg,cert-err34-c)
+  REQUIRE(std::sscanf(words.c_str(), "seen from above its nearest place is (%lf, %lf)", &named.x(),
+                      &named.y()) == 2);
+  CHECK(top.at_m(named));
 }
 
 TEST_CASE("a mesh that would be too large is refused with what would help, not with keys unset",

@@ -166,9 +166,11 @@ bool is_closed(const TriangleSurface& surface) {
       refusal.why, terms.without_result, advice, terms.wrap, terms.before_number, wrap_m)};
 }
 
-// Whether a wrap is mostly its own offset, as around a sheet: about twice that thick.
+// Whether a wrap is mostly its own offset, as around a sheet: about twice that thick, and on
+// average up to eight times where some of it is solid.
 bool is_skin(const TriangleSurface& wrap, double offset_m) {
-  return core::volume_m3(wrap) < 2.0 * offset_m * area_m2(wrap);
+  constexpr double thickest = 8.0;  // in offsets
+  return core::volume_m3(wrap) < 0.5 * thickest * offset_m * area_m2(wrap);
 }
 
 // In place of what does not pass; in one piece, if that is asked for.

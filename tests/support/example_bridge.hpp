@@ -69,8 +69,8 @@ class ExampleBridge {
 // long, but a reply comes in the end.
 inline constexpr std::chrono::milliseconds unhurried{20'000};
 
-// Apart for every process, so that tests may run beside each other, and below those that Linux gives
-// to sockets that ask for none (ip_local_port_range, from 32768).
+// Apart for every process, so that tests may run beside each other, and below those that Linux
+// gives to sockets that ask for none (ip_local_port_range, from 32768).
 inline std::uint16_t free_port() {
   return static_cast<std::uint16_t>(10000 + getpid() % 20000);
 }

@@ -109,7 +109,7 @@ ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results
             {std::pow(10.0, of->interval.low), std::pow(10.0, of->interval.high)},
             of->standard_deviation};
   }
-  return mean_table("pooled", "Over participants: geometric mean of the thresholds",
+  return mean_table("pooled", "Over participants: geometric mean of the likeliest thresholds",
                     column("SD of log10 thresholds", "sd_log10"), axis, mean);
 }
 

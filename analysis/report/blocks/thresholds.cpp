@@ -125,9 +125,8 @@ std::optional<PopulationFit> population_of(const std::vector<ParticipantThreshol
 std::optional<MeanLogThreshold> mean_of(const std::vector<ParticipantThreshold>& people) {
   std::vector<double> logarithms;
   for (const ParticipantThreshold& person : people) {
-    const auto reported = reported_threshold(person);
-    if (reported && reported->threshold > 0.0) {
-      logarithms.push_back(std::log10(reported->threshold));
+    if (const auto threshold = likeliest_threshold(person); threshold && *threshold > 0.0) {
+      logarithms.push_back(std::log10(*threshold));
     }
   }
   if (logarithms.size() < 2) {
@@ -148,6 +147,13 @@ std::optional<ReportedThreshold> reported_threshold(const ParticipantThreshold& 
     return ReportedThreshold{of->curve.threshold, of->intervals.threshold, false};
   }
   return std::nullopt;
+}
+
+std::optional<double> likeliest_threshold(const ParticipantThreshold& person) {
+  if (person.estimate) {
+    return person.estimate->curve.threshold;
+  }
+  return person.posterior ? std::optional{person.posterior->threshold} : std::nullopt;
 }
 
 std::optional<Interval> beyond_levels(const ParticipantThreshold& person) {
@@ -305,9 +311,10 @@ std::vector<CitingText> remarks_on_mean(const ThresholdResults& results) {
     return {"No mean over participants: it takes two with a threshold."};
   }
   std::vector<CitingText> remarks{
-      "Mean over participants: of the logarithms of their thresholds, each counting the same, "
-      "interval by t. The standard deviation is that between participants and of their "
-      "estimates' errors together. Answers of participants are not put together as if of one."};
+      "Mean over participants: of the logarithms of their likeliest thresholds, each counting the "
+      "same, interval by t; posterior medians of short tracks are too low on average. The standard "
+      "deviation is that between participants and of their estimates' errors together. Answers of "
+      "participants are not put together as if of one."};
   const int without =
       static_cast<int>(results.participants.size()) - results.mean_log->participants;
   if (without > 0) {
@@ -387,10 +394,7 @@ PersonalValues thresholds_of(const BlockDesign& design, const ThresholdResults& 
                                   axis.is_below ? " below the standard" : "",
                                   axis.is_fraction ? " (Weber fraction)" : "", design.task,
                                   core::row_of(design.shape).name),
-                      true, results.participants, [](const ParticipantThreshold& person) {
-                        const auto reported = reported_threshold(person);
-                        return reported ? std::optional{reported->threshold} : std::nullopt;
-                      });
+                      true, results.participants, likeliest_threshold);
   for (const ParticipantThreshold& person : results.participants) {
     if (const auto range = beyond_levels(person)) {
       values.beyond[person.participant_id] = *range;

@@ -161,9 +161,11 @@ Row mean_threshold(const char* words, const std::string& procedure) {
       "tasks with procedures", fmt::format("mean threshold, {}", words), 0.0,
       [settings](core::Rng& rng) -> std::optional<double> {
         const double threshold = rng.log_normal(1.0, 0.4);
-        const auto of = estimates_of(levels_of(
-            *settings, {core::PsychometricShape::weibull, threshold, 2.0, 0.5, 0.02}, rng));
-        return of ? std::optional{std::log(of->threshold)} : std::nullopt;
+        const auto levels = levels_of(
+            *settings, {core::PsychometricShape::weibull, threshold, 2.0, 0.5, 0.02}, rng);
+        const auto curve = analysis::curve_with_threshold(
+            threshold_model, levels, analysis::fit_psychometric(threshold_model, levels));
+        return curve ? std::optional{std::log(curve->threshold)} : std::nullopt;
       });
 }
 

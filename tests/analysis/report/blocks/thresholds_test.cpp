@@ -215,7 +215,7 @@ TEST_CASE("comparisons below the standard have the thresholds of those above",
         Approx(above[0]["threshold"].get<double>()).epsilon(1e-9));
 }
 
-TEST_CASE("the mean threshold is R's of the participants' logarithms, not of one observer",
+TEST_CASE("the mean threshold is R's of participants' likeliest logarithms, not of one observer",
           "[analysis][thresholds]") {
   std::vector<results::AnswerRow> answers;
   std::vector<double> logarithms;
@@ -223,7 +223,7 @@ TEST_CASE("the mean threshold is R's of the participants' logarithms, not of one
        std::vector<std::tuple<std::string, double, std::uint64_t>>{
            {"a", 0.05, 1}, {"b", 0.1, 2}, {"c", 0.2, 3}}) {
     const auto of_one = observer(name, threshold, 40, seed);
-    logarithms.push_back(std::log10(posterior_of(levels_of(of_one)).threshold));
+    logarithms.push_back(std::log10(fit_psychometric(model, levels_of(of_one)).curve->threshold));
     answers = joined(answers, of_one);
   }
   const auto r = testing::r_numbers("x <- " + testing::r_vector(logarithms) +

@@ -328,7 +328,8 @@ MaximumSearch::MaximumSearch(const BinomialLikelihood& likelihood, const Psychom
   for (const double slope : slopes) {
     std::vector<std::vector<double>> shapes;
     for (const double position : positions) {
-      shapes.push_back(likelihood.shape_values({position, slope, 0.0, 0.0}));
+      const PsychometricVector at{position, slope, 0.0, 0.0};  // of a level 0 it is infinite
+      shapes.push_back(likelihood.shape_values(at.cwiseMax(box.low).cwiseMin(box.high)));
     }
     for (const double lapse : lapses) {
       for (std::size_t i = 0; i < positions.size(); ++i) {

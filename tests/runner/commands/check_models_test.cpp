@@ -89,9 +89,9 @@ TEST_CASE("what a joined body states says nothing about the mesh of the plate th
   report.bodies[0].radius_edge_ratio.used = 2.0;
   CHECK_THAT(
       runner::note_of_relaxation(stimulus, report),
-      Contains("cup is meshed with radius_edge_ratio: 2, as 1.414 would") && !Contains("tray"));
+      Contains("cup is meshed with radius_edge_ratio: 2, as 1.414 takes") && !Contains("tray"));
   report.bodies = {{2, {1.414, 1.414}}, {2, {3.0, 4.0}}};
   CHECK_THAT(runner::note_of_relaxation(stimulus, report),
              Contains("body 1 that cup touches (study.yaml:9:3: plates.tray) is meshed with "
-                      "radius_edge_ratio: 4, as 3 would"));
+                      "radius_edge_ratio: 4, as 3 takes"));
 }

@@ -46,6 +46,7 @@ void ModalState::touch(const SurfacePoint& point, const Vec3& normal) noexcept {
     double weight;
     const double* shape;  // of all modes
   };
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): the first `count` are set
   std::array<Part, 3 * std::tuple_size_v<decltype(point.nodes)>> parts;
   std::size_t count = 0;
   for (std::size_t i = 0; i < point.count; ++i) {

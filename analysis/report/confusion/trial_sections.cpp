@@ -14,12 +14,6 @@ namespace {
 constexpr std::uint64_t learning_seed = 6;
 constexpr std::uint64_t serial_seed = 7;
 
-// Of times, speeds and numbers, one a participant.
-Cell mean_of_positive(const std::vector<double>& values) {
-  return interval(mean_and_spread(values).mean,
-                  values.size() > 1 ? std::optional{positive_interval(values)} : std::nullopt);
-}
-
 // Least squares of right answers on presentations; unset for one presentation.
 std::optional<double> slope_of(const IdentifyingParticipant& person) {
   const auto n = static_cast<double>(person.trials.size());

@@ -96,6 +96,11 @@ Cell mean_with_interval(const std::vector<double>& values) {
                   values.size() > 1 ? std::optional{t_interval(values)} : std::nullopt);
 }
 
+Cell mean_of_positive(const std::vector<double>& values) {
+  return interval(mean_and_spread(values).mean,
+                  values.size() > 1 ? std::optional{positive_interval(values)} : std::nullopt);
+}
+
 Cell proportion(const Proportion& proportion) {
   if (proportion.trials == 0) {
     return {with_interval(proportion),

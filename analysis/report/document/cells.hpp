@@ -91,6 +91,8 @@ Cell people_known(std::int64_t known, std::int64_t took_part);
 Cell interval_above_zero(double value, const Interval& interval);
 // Of the mean of one value or more; by t of two or more.
 Cell mean_with_interval(const std::vector<double>& values);
+// The same of what is never below 0, such as times and forces: positive_interval.
+Cell mean_of_positive(const std::vector<double>& values);
 // Values: successes, trials, their ratio and its 95 % score interval.
 Cell proportion(const Proportion& proportion);
 // Values: successes, trials, their ratio. "43/80 = 54 %"

@@ -12,10 +12,6 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr double half = 0.5;
-
-Cell mean_cell(const std::vector<double>& values) {
-  return interval(mean_and_spread(values).mean, positive_interval(values));
-}
 }  // namespace
 
 ReportTable participants_taps_table(const std::map<std::string, TapsOfParticipant>& participants) {
@@ -41,8 +37,8 @@ ReportTable participants_taps_table(const std::map<std::string, TapsOfParticipan
                           interval(contacts_s.back(), none)});
   }
   if (participants.size() > 1) {
-    table.rows.push_back({word("mean"), count(all), mean_cell(speeds_m_s), mean_cell(peaks_n),
-                          mean_cell(contacts_s)});
+    table.rows.push_back({word("mean"), count(all), mean_of_positive(speeds_m_s),
+                          mean_of_positive(peaks_n), mean_of_positive(contacts_s)});
   }
   return table;
 }

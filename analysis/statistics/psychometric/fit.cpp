@@ -12,6 +12,11 @@
 namespace tapstudy::analysis {
 namespace {
 constexpr int max_iterations = 300;
+constexpr double impossible = -std::numeric_limits<double>::infinity();
+
+PsychometricVector inside(const PsychometricBox& box, const PsychometricVector& at) {
+  return at.cwiseMax(box.low).cwiseMin(box.high);
+}
 
 bool is_held(const PsychometricBox& box, const PsychometricVector& at,
              const PsychometricVector& score, Eigen::Index i) {
@@ -44,7 +49,7 @@ class Climb {
       : likelihood_{&likelihood},
         box_{&box},
         smallest_gain_{smallest_gain},
-        at_{start.cwiseMax(box.low).cwiseMin(box.high)},
+        at_{inside(box, start)},
         here_{likelihood.slopes(at_)} {}
 
   // So many steps, or as many as there are.
@@ -62,9 +67,7 @@ class Climb {
     Eigen::Matrix4d information = remove_fixed_parameters(here_, *box_, at_, score);
     information.diagonal() *= 1.0 + damping_;
     information.diagonal().array() += 1e-12;
-    const PsychometricVector next = (at_ + PsychometricVector{information.ldlt().solve(score)})
-                                        .cwiseMax(box_->low)
-                                        .cwiseMin(box_->high);
+    const PsychometricVector next = inside(*box_, at_ + information.ldlt().solve(score));
     const BinomialLikelihood::Slopes there =
         next.allFinite() ? likelihood_->slopes(next)
                          : BinomialLikelihood::Slopes{.log_likelihood = impossible};
@@ -80,7 +83,6 @@ class Climb {
     }
   }
 
-  static constexpr double impossible = -std::numeric_limits<double>::infinity();
   const BinomialLikelihood* likelihood_;
   const PsychometricBox* box_;
   double smallest_gain_;
@@ -131,7 +133,7 @@ Maximum refined(const BinomialLikelihood& likelihood, const PsychometricBox& box
       break;
     }
     last_length = step.norm();
-    at = (at + step).cwiseMax(box.low).cwiseMin(box.high);
+    at = inside(box, at + step);
   }
   return {at, likelihood.value(at)};
 }
@@ -286,8 +288,8 @@ std::vector<double> start_lapses(const PsychometricBox& box) {
 
 // Impossible answers stay so, but have no effect where there are none of them: 0 times it is 0.
 double log_of(double probability) {
-  constexpr double impossible = 1e-300;
-  return std::log(std::max(probability, impossible));
+  constexpr double least = 1e-300;
+  return std::log(std::max(probability, least));
 }
 
 std::vector<double> start_guesses(const PsychometricBox& box) {
@@ -295,6 +297,13 @@ std::vector<double> start_guesses(const PsychometricBox& box) {
   const double width = box.high[guess_at] - low;
   return width > 0.0 ? std::vector{low + 0.1 * width, low + 0.5 * width} : std::vector{low};
 }
+
+// From a rough maximum to the last digits of its place.
+Maximum climbed_on(const BinomialLikelihood& likelihood, const PsychometricBox& box,
+                   const Maximum& rough) {
+  return refined(likelihood, box, local_maximum(likelihood, box, rough.at));
+}
+
 // The higher one of two that have met.
 void add_if_apart(const Climb& climb, std::vector<Climb>& others) {
   constexpr double near = 1e-2;  // of a width of the function, and of a rate's range
@@ -329,7 +338,7 @@ MaximumSearch::MaximumSearch(const BinomialLikelihood& likelihood, const Psychom
     std::vector<std::vector<double>> shapes;
     for (const double position : positions) {
       const PsychometricVector at{position, slope, 0.0, 0.0};  // of a level 0 it is infinite
-      shapes.push_back(likelihood.shape_values(at.cwiseMax(box.low).cwiseMin(box.high)));
+      shapes.push_back(likelihood.shape_values(inside(box, at)));
     }
     for (const double lapse : lapses) {
       for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -351,7 +360,7 @@ void MaximumSearch::add(const PsychometricVector& at, const BinomialLikelihood& 
     log_success_(row, static_cast<Eigen::Index>(i)) = log_of(p);
     log_failure_(row, static_cast<Eigen::Index>(i)) = log_of(1.0 - p);
   }
-  points_.push_back(at.cwiseMax(box_.low).cwiseMin(box_.high));
+  points_.push_back(inside(box_, at));
 }
 
 std::vector<PsychometricVector> MaximumSearch::starts(const BinomialLikelihood& likelihood) const {
@@ -382,7 +391,7 @@ Maximum MaximumSearch::rough_maximum(const BinomialLikelihood& likelihood,
   std::vector<PsychometricVector> all = further_starts;
   const std::vector<PsychometricVector> of_grid = starts(likelihood);
   all.insert(all.end(), of_grid.begin(), of_grid.end());
-  Maximum best{all.front(), -std::numeric_limits<double>::infinity()};
+  Maximum best{all.front(), impossible};
   const auto advance = [&](Climb& climb, int steps) {
     climb.advance(steps);
     best = climb.best().log_likelihood > best.log_likelihood ? climb.best() : best;
@@ -408,15 +417,14 @@ Maximum MaximumSearch::maximum(const BinomialLikelihood& likelihood,
                                const std::vector<PsychometricVector>& further_starts) const {
   const Maximum rough =
       rough_maximum(likelihood, further_starts, std::numeric_limits<double>::infinity());
-  return refined(likelihood, box_, local_maximum(likelihood, box_, rough.at));
+  return climbed_on(likelihood, box_, rough);
 }
 
 bool MaximumSearch::is_exceeded(const BinomialLikelihood& likelihood, double log_likelihood,
                                 const PsychometricVector& start) const {
   const Maximum rough = rough_maximum(likelihood, {start}, log_likelihood);
   return rough.log_likelihood > log_likelihood ||
-         refined(likelihood, box_, local_maximum(likelihood, box_, rough.at)).log_likelihood >
-             log_likelihood;
+         climbed_on(likelihood, box_, rough).log_likelihood > log_likelihood;
 }
 
 PsychometricFit fit_psychometric(const PsychometricModel& model, const std::vector<Level>& levels) {

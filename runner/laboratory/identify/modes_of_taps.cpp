@@ -293,14 +293,14 @@ std::vector<IdentifiedTap> some_of(const std::vector<IdentifiedTap>& taps) {
 
 FreeTaps free_taps(const analysis::Band& band, const std::vector<IdentifiedTap>& taps,
                    TapRemarks& remarks) {
-  FoundInTaps first = looked_at(band, some_of(taps), remarks);
+  const std::vector<IdentifiedTap> some = some_of(taps);
+  FoundInTaps first = looked_at(band, some, remarks);
   const double settled_s =
       first.taps.empty() ? 0.0
                          : analysis::settled_after_s(decays_of(first.taps), impacts_of(first.taps),
                                                      band, first.found);
   if (settled_s <= 0.0) {
-    const bool are_all = some_of(taps).size() == taps.size();
-    return {are_all ? std::move(first) : looked_at(band, taps, remarks), {}};
+    return {some.size() == taps.size() ? std::move(first) : looked_at(band, taps, remarks), {}};
   }
   std::vector<IdentifiedTap> later = taps;
   begin_later(settled_s, later, remarks);

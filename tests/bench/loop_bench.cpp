@@ -13,7 +13,8 @@ using namespace tapstudy;
 namespace {
 class Nothing final : public device::Device {
  public:
-  core::TickFault read(core::HandState& /*hand*/, double /*elapsed_s*/) noexcept override {
+  core::TickFault read(core::HandState& hand, double /*elapsed_s*/) noexcept override {
+    hand = {core::Vec3::Zero(), core::Vec3::Zero()};
     return {};
   }
   core::TickFault write(const core::Vec3& /*force_n*/) noexcept override { return {}; }
@@ -56,6 +57,10 @@ int main(int count, char** words) {
     device::ask_for_realtime({std::atoi(words[1]), true, {}});
     loop.run_ticks(ticks);
   }}.join();
+  if (const core::TickFault fault = loop.report().stopped_by; fault != core::TickFault::none) {
+    fmt::print(stderr, "loop_bench: {}\n", to_text(fault));
+    return 1;
+  }
   for (const device::Nanoseconds lateness : clock.lateness()) {
     fmt::print("{}\n", lateness);
   }

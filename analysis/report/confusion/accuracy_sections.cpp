@@ -125,18 +125,16 @@ bool has_other_answers(const IdentificationSummary& summary) {
 }
 
 void add_remark_on_chance(const IdentificationSummary& summary, ReportSection& section) {
+  section.remarks.push_back(
+      fmt::format("A participant's probability (one-sided, not adjusted for the number of "
+                  "participants) is that of the same test of that participant's answers alone, by "
+                  "{} draws, so that none is below {:.3f}.",
+                  draws_of_a_participant, 1.0 / (draws_of_a_participant + 1)));
   if (has_other_answers(summary)) {
     section.remarks.emplace_back(
         "Some answers name no stimulus, and count as wrong. Chance is that of an observer who "
-        "gives such answers as often and otherwise guesses; the exact binomial test of each "
-        "participant, which assumes that every answer is a guess among the stimuli, is left out.");
-    return;
-  }
-  section.remarks.emplace_back(
-      "A participant's probability (one-sided, not adjusted for the number of participants) is "
-      "exact binomial where each answer was right as often as the others, else by shuffling the "
-      "answers over the trials.");
-  if (const auto constant = share_of_constant_answer(summary.matrix)) {
+        "gives such answers as often and otherwise guesses.");
+  } else if (const auto constant = share_of_constant_answer(summary.matrix)) {
     section.remarks.push_back(
         fmt::format("Answers were not right equally often: always giving the one that was right "
                     "most often is right in {}, not in {}.",
@@ -159,10 +157,7 @@ ReportTable participants_table(const IdentificationSummary& summary) {
 
 ReportSection accuracy_section(const IdentificationSummary& summary) {
   ReportSection section{"Accuracy"};
-  section.tables = {estimates_table(summary)};
-  if (!has_other_answers(summary)) {
-    section.tables.push_back(participants_table(summary));
-  }
+  section.tables = {estimates_table(summary), participants_table(summary)};
   if (summary.accuracy_over_participants) {
     section.remarks.emplace_back(core::citing(
         "95 % intervals hold for participants of whom these are a sample, from three on, each "

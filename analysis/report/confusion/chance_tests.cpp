@@ -116,16 +116,6 @@ std::optional<double> share_of_constant_answer(const ConfusionMatrix& matrix) {
                        : std::optional{static_cast<double>(most) / static_cast<double>(totals.all)};
 }
 
-double chance_p_of(const ConfusionMatrix& of_participant) {
-  if (!share_of_constant_answer(of_participant)) {
-    return binomial_p_at_least(overall_accuracy(of_participant), of_participant.chance());
-  }
-  return permutation_tests(shuffled_tables({of_participant.counts}),
-                           {right_answers(of_participant)}, max_draws, Draws{}.seed)
-      .front()
-      .p;
-}
-
 ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatrix& matrix,
                          const std::vector<std::string>& factors, const Draws& wanted) {
   if (!randomisation.tables) {
@@ -143,5 +133,14 @@ ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatr
                            randomisation.words);
   tests.factors.assign(results.begin() + 1, results.end());
   return tests;
+}
+
+std::optional<double> chance_p_of(const IdentifyingParticipant& person, const BlockDesign& design,
+                                  const IdentificationData& data, const Draws& wanted) {
+  const IdentificationData own{data.stimuli, data.responses, {person}};
+  ConfusionMatrix matrix{data.stimuli, data.responses};
+  matrix.counts = counts_of(data, person);
+  const ChanceTests tests = chance_tests(randomisation_of(design, own), matrix, {}, wanted);
+  return tests.accuracy ? std::optional{tests.accuracy->p} : std::nullopt;
 }
 }  // namespace tapstudy::analysis

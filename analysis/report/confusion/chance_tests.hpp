@@ -31,11 +31,6 @@ RightAnswers right_answers(const ConfusionMatrix& matrix);
 // where that is no more than each other one, or a stimulus has no right answer.
 std::optional<double> share_of_constant_answer(const ConfusionMatrix& matrix);
 
-// One participant's right answers against chance, one-sided: exactly binomial where each answer is
-// right as often, else by shuffling the answers over the trials, since preferring what is right
-// most often is no sign of feeling anything.
-double chance_p_of(const ConfusionMatrix& of_participant);
-
 // Accuracy, and agreement in each factor, against chance by randomisation within participants.
 struct ChanceTests {
   std::string test;  // how, or why not
@@ -44,4 +39,12 @@ struct ChanceTests {
 };
 ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatrix& matrix,
                          const std::vector<std::string>& factors, const Draws& wanted = {});
+
+// Draws of the test of one participant: many are tested, and p can fall to .001.
+inline constexpr int draws_of_a_participant = 999;
+
+// One participant's accuracy, tested likewise by that participant's answers alone, so that habits
+// are no sign of feeling anything; unset where nothing was randomised, or answered.
+std::optional<double> chance_p_of(const IdentifyingParticipant& person, const BlockDesign& design,
+                                  const IdentificationData& data, const Draws& wanted);
 }  // namespace tapstudy::analysis

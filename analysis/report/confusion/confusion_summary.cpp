@@ -145,13 +145,11 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
       accuracy{overall_accuracy(matrix)},
       factors{factor_results(matrix)} {
   const MatrixOfParticipants counted = counted_by(design, data, matrix);
-  for (const ParticipantCounts& person : counted.participants) {
+  for (const IdentifyingParticipant& person : data.participants) {
     ConfusionMatrix own = matrix;
-    own.counts = person.counts;
-    const Proportion right = overall_accuracy(own);
-    const bool is_tested = right.trials > 0 && matrix.share_of_alternatives() == 1.0;
-    participants.push_back(
-        {person.id, right, is_tested ? std::optional{chance_p_of(own)} : std::nullopt});
+    own.counts = counts_of(data, person);
+    participants.push_back({person.id, overall_accuracy(own),
+                            chance_p_of(person, design, data, Draws{draws_of_a_participant})});
   }
   add_over_participants(counted, *this);
   personal = shares_right(*this);

@@ -40,46 +40,57 @@ PopulationGrid grid_of(const PsychometricModel& model,
        std::log(2.0 * width / std::max(range.smallest_gap, finest * range.length())), slope_cells}};
 }
 
-// Free rates, and what each counts.
-std::vector<std::pair<double, double>> rates_in(const Interval& rate, std::size_t cells,
-                                                bool is_lapse) {
-  if (rate.low == rate.high) {
-    return {{rate.low, 1.0}};
+// The rates in a range, or the one that it is.
+std::vector<double> rates_in(const Interval& range, std::size_t cells) {
+  if (range.low == range.high) {
+    return {range.low};
   }
-  const GridAxis axis{rate.low, rate.high, cells};
-  std::vector<std::pair<double, double>> rates;
+  const GridAxis axis{range.low, range.high, cells};
+  std::vector<double> rates;
   for (std::size_t i = 0; i < cells; ++i) {
-    rates.emplace_back(axis.centre(i),
-                       is_lapse ? std::exp(log_prior_of_rate(axis.centre(i))) : 1.0);
+    rates.push_back(axis.centre(i));
   }
   return rates;
 }
 
-// The likelihood of one person's answers at each position (row) and ln slope (column), up to a
-// factor.
-Eigen::MatrixXd likelihoods(const PsychometricModel& model, const std::vector<Level>& levels,
-                            const PopulationGrid& grid) {
+// How people's lapse rates are distributed, as believed before they answer.
+Eigen::VectorXd prior_of(const std::vector<double>& lapse_rates) {
+  Eigen::VectorXd prior(static_cast<Eigen::Index>(lapse_rates.size()));
+  for (std::size_t i = 0; i < lapse_rates.size(); ++i) {
+    prior[static_cast<Eigen::Index>(i)] = std::exp(log_prior_of_rate(lapse_rates[i]));
+  }
+  return prior / prior.sum();
+}
+
+// The likelihood of one person's answers at each position (row) and ln slope (column), of each
+// lapse rate, up to a factor.
+using PersonLikelihood = std::vector<Eigen::MatrixXd>;
+PersonLikelihood likelihood_of(const PsychometricModel& model, const std::vector<Level>& levels,
+                               const PopulationGrid& grid) {
   const BinomialLikelihood likelihood{model.shape, levels, model.rates};
   const Interval guess = model.rates == Rates::equal ? Interval{0.0, 0.0} : model.guess;
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(position_cells, slope_cells);
+  PersonLikelihood found;
   Eigen::MatrixXd logarithms(position_cells, slope_cells);
   double scale = -std::numeric_limits<double>::infinity();
-  for (const auto& [lapse_rate, lapse_weight] : rates_in(model.lapse, lapse_cells, true)) {
-    for (const auto& [guess_rate, guess_weight] : rates_in(guess, guess_cells, false)) {
-      for (Eigen::Index i = 0; i < sum.rows(); ++i) {
-        for (Eigen::Index j = 0; j < sum.cols(); ++j) {
+  for (const double lapse_rate : rates_in(model.lapse, lapse_cells)) {
+    found.emplace_back(Eigen::MatrixXd::Zero(position_cells, slope_cells));
+    for (const double guess_rate : rates_in(guess, guess_cells)) {
+      for (Eigen::Index i = 0; i < logarithms.rows(); ++i) {
+        for (Eigen::Index j = 0; j < logarithms.cols(); ++j) {
           logarithms(i, j) = likelihood.value({grid.position.centre(static_cast<std::size_t>(i)),
                                                grid.log_slope.centre(static_cast<std::size_t>(j)),
                                                guess_rate, lapse_rate});
         }
       }
       const double most = std::max(scale, logarithms.maxCoeff());
-      sum = sum * std::exp(scale - most) +
-            lapse_weight * guess_weight * (logarithms.array() - most).exp().matrix();
+      for (Eigen::MatrixXd& of_lapse : found) {
+        of_lapse *= std::exp(scale - most);
+      }
+      found.back() += (logarithms.array() - most).exp().matrix();
       scale = most;
     }
   }
-  return sum / sum.maxCoeff();
+  return found;
 }
 
 // A normal distribution over the cells of an axis, never narrower than a cell.
@@ -116,9 +127,11 @@ struct MomentsOverCells {
 
 class Population {
  public:
-  Population(PopulationGrid grid, std::vector<Eigen::MatrixXd> people)
+  Population(PopulationGrid grid, std::vector<PersonLikelihood> people, Eigen::VectorXd lapses)
       : grid_{grid},
         people_{std::move(people)},
+        lapses_before_{std::move(lapses)},
+        lapses_{lapses_before_},
         positions_{0.5 * (grid.range.low + grid.range.high), 0.5 * grid.range.length()},
         slopes_{0.5 * (grid.log_slope.low + grid.log_slope.high),
                 0.25 * (grid.log_slope.high - grid.log_slope.low)} {}
@@ -128,58 +141,105 @@ class Population {
   const NormalOverCells& positions() const { return positions_; }
   const NormalOverCells& slopes() const { return slopes_; }
 
-  // Climbs to the greatest log-likelihood, of this mean position if one is given, and returns it.
+  // Climbs to the greatest log-likelihood, of this mean position if one is given, and returns it:
+  // every third step of EM goes on from where two others lead (SQUAREM, Varadhan & Roland 2008,
+  // step length S3), unless that is no improvement.
   double climb(const std::optional<double>& mean) {
-    constexpr int most_steps = 500;
+    constexpr int most_steps = 200;
     constexpr double close = 1e-6;
     positions_.mean = mean.value_or(positions_.mean);
-    double before = -std::numeric_limits<double>::infinity();
+    double now = -std::numeric_limits<double>::infinity();
     for (int step = 0; step < most_steps; ++step) {
-      const double now = improve(mean);
-      if (now - before < close) {
-        return now;
+      const Parameters start = parameters();
+      const double before = improve(mean);
+      const Parameters first = parameters() - start;
+      improve(mean);
+      const Parameters end = parameters();
+      const Parameters bend = end - start - 2.0 * first;
+      const double length = std::max(1.0, first.norm() / std::max(bend.norm(), 1e-12));
+      set(start + 2.0 * length * first + length * length * bend);
+      now = improve(mean);
+      if (!(now >= before)) {
+        set(end);
+        now = improve(mean);
       }
-      before = now;
+      if (now - before < close) {
+        break;
+      }
     }
-    return before;
+    return now;
   }
 
   // Climbs from here on as from there, of the same people.
   void start_as(const Population& other) {
     positions_ = other.positions_;
     slopes_ = other.slopes_;
+    lapses_ = other.lapses_;
   }
 
   // A person's probability of each cell.
   Eigen::VectorXd of_person(std::size_t i) const {
-    Eigen::VectorXd probabilities =
-        positions_.over(grid_.position).cwiseProduct(people_[i] * slopes_.over(grid_.log_slope));
+    const Eigen::VectorXd steep = slopes_.over(grid_.log_slope);
+    Eigen::VectorXd probabilities = Eigen::VectorXd::Zero(position_cells);
+    for (Eigen::Index lapse = 0; lapse < lapses_.size(); ++lapse) {
+      probabilities += lapses_[lapse] * (people_[i][static_cast<std::size_t>(lapse)] * steep);
+    }
+    probabilities.array() *= positions_.over(grid_.position).array();
     return probabilities / probabilities.sum();
   }
 
  private:
-  // A step of EM; the log-likelihood before it.
+  // Means and logarithms of deviations, of positions and of ln slopes; logarithms of the shares of
+  // people with each lapse rate.
+  using Parameters = Eigen::VectorXd;
+  Parameters parameters() const {
+    Parameters now(4 + lapses_.size());
+    now << positions_.mean, std::log(positions_.deviation), slopes_.mean,
+        std::log(slopes_.deviation), lapses_.array().log().matrix();
+    return now;
+  }
+  void set(const Parameters& to) {
+    positions_ = {to[0], std::max(grid_.position.cell(), std::exp(to[1]))};
+    slopes_ = {to[2], std::max(grid_.log_slope.cell(), std::exp(to[3]))};
+    lapses_ = to.tail(lapses_.size()).array().exp();
+    lapses_ /= lapses_.sum();
+  }
+
+  // A step of EM; the log-likelihood before it, with what is believed of lapses.
   double improve(const std::optional<double>& mean) {
     const Eigen::VectorXd at = positions_.over(grid_.position);
     const Eigen::VectorXd steep = slopes_.over(grid_.log_slope);
-    double log_likelihood = 0.0;
+    double log_likelihood = lapses_before_.dot(lapses_.array().log().matrix());
     MomentsOverCells of_positions;
     MomentsOverCells of_slopes;
-    for (const Eigen::MatrixXd& person : people_) {
-      const Eigen::VectorXd by_position = at.cwiseProduct(person * steep);
-      const Eigen::VectorXd by_slope = steep.cwiseProduct(person.transpose() * at);
+    Eigen::VectorXd lapses = lapses_before_;
+    for (const PersonLikelihood& person : people_) {
+      Eigen::VectorXd by_position = Eigen::VectorXd::Zero(at.size());
+      Eigen::VectorXd by_slope = Eigen::VectorXd::Zero(steep.size());
+      Eigen::VectorXd by_lapse(lapses_.size());
+      for (Eigen::Index lapse = 0; lapse < lapses_.size(); ++lapse) {
+        const Eigen::MatrixXd& of_lapse = person[static_cast<std::size_t>(lapse)];
+        const Eigen::VectorXd own = lapses_[lapse] * at.cwiseProduct(of_lapse * steep);
+        by_position += own;
+        by_slope += lapses_[lapse] * steep.cwiseProduct(of_lapse.transpose() * at);
+        by_lapse[lapse] = own.sum();
+      }
       const double all = std::max(by_position.sum(), std::numeric_limits<double>::min());
       log_likelihood += std::log(all);
       of_positions.add(by_position / all, grid_.position);
       of_slopes.add(by_slope / all, grid_.log_slope);
+      lapses += by_lapse / all;
     }
     positions_ = of_positions.normal(count(), mean, grid_.position.cell());
     slopes_ = of_slopes.normal(count(), {}, grid_.log_slope.cell());
+    lapses_ = lapses / lapses.sum();
     return log_likelihood;
   }
 
   PopulationGrid grid_;
-  std::vector<Eigen::MatrixXd> people_;
+  std::vector<PersonLikelihood> people_;
+  Eigen::VectorXd lapses_before_;  // shares of people with each lapse rate
+  Eigen::VectorXd lapses_;
   NormalOverCells positions_;
   NormalOverCells slopes_;
 };
@@ -252,11 +312,11 @@ std::optional<PopulationFit> fit_population(const PsychometricModel& model,
     return std::nullopt;
   }
   const PopulationGrid grid = grid_of(model, people);
-  std::vector<Eigen::MatrixXd> of_people;
+  std::vector<PersonLikelihood> of_people;
   for (const std::vector<Level>& levels : people) {
-    of_people.push_back(likelihoods(model, levels, grid));
+    of_people.push_back(likelihood_of(model, levels, grid));
   }
-  Population population{grid, std::move(of_people)};
+  Population population{grid, std::move(of_people), prior_of(rates_in(model.lapse, lapse_cells))};
   const double most = population.climb({});
   const double mean = population.positions().mean;
   if (mean < grid.range.low || mean > grid.range.high) {

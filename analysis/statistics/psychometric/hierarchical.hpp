@@ -22,12 +22,15 @@ struct PopulationFit {
 
 // Thresholds on the shape's axis and ln slopes are normal over people, independent of each other;
 // the four parameters are the likeliest when each person's are integrated out on a grid, by EM
-// (Bock & Aitkin 1981). Rates that are free in the model are integrated out as well: lapses over
-// beta(1, 10), guesses evenly. The interval of the mean is by profile likelihood, against
-// N ln(1 + t^2 / (N - 1)) in place of the quantile of chi-squared: the law of the mean of N normal
-// values, to which it comes where everybody has answered much. Whoever was right at all levels, or
-// at none, takes part. nullopt: fewer than three people, fewer than two levels, or a mean that lies
-// beyond the levels. Throws InvalidInput as fit_psychometric does.
+// (Bock & Aitkin 1981). Rates that are free in the model are integrated out as well: guesses
+// evenly, lapses over shares of people with each rate, which are estimated with the four (beta(1,
+// 10) counts as one person more: of people who lapse as often, a given distribution would take the
+// lapses for shallower or steeper functions, and shift all thresholds). The interval of the mean is
+// by profile likelihood, against N ln(1 + t^2 / (N - 1)) in place of the quantile of chi-squared:
+// the law of the mean of N normal values, to which it comes where everybody has answered much.
+// Whoever was right at all levels, or at none, takes part. nullopt: fewer than three people, fewer
+// than two levels, or a mean that lies beyond the levels. Throws InvalidInput as fit_psychometric
+// does.
 std::optional<PopulationFit> fit_population(const PsychometricModel& model,
                                             const std::vector<std::vector<Level>>& people,
                                             double confidence = 0.95);

@@ -123,16 +123,30 @@ std::optional<Outcome> agreement_in_factor(const BlockDesign& design,
   return Outcome{tests.factors.at(0).p};
 }
 
-// All answers for those of one participant.
-std::optional<Outcome> accuracy_of_one(const BlockDesign& design, const IdentificationData& data,
-                                       core::Rng& /*rng*/) {
-  analysis::ConfusionMatrix of_one{design.stimuli, design.responses};
+// All answers for those of one participant, who had so many blocks of shuffled stimuli.
+std::optional<Outcome> accuracy_of_one(BlockDesign design, IdentificationData data,
+                                       core::Rng& rng) {
+  const std::size_t blocks = data.participants.size();
+  analysis::IdentifyingParticipant one = data.participants.front();
+  one.trials.clear();
   for (const auto& person : data.participants) {
-    for (const auto& trial : person.trials) {
-      ++of_one.counts[trial.stimulus][trial.response];
+    for (analysis::IdentifiedTrial trial : person.trials) {
+      trial.place = one.trials.size();
+      one.trials.push_back(trial);
     }
   }
-  return Outcome{chance_p_of(of_one)};
+  data.participants = {one};
+  design.is_order_known = true;
+  design.redraw = [blocks](const analysis::Place& /*place*/, std::uint64_t draw) {
+    core::Rng again{draw};
+    std::vector<int> order;
+    for (std::size_t block = 0; block < blocks; ++block) {
+      const auto shuffled_block = shuffled(stimuli, trials_of_each, again);
+      order.insert(order.end(), shuffled_block.begin(), shuffled_block.end());
+    }
+    return order;
+  };
+  return accuracy_against(*randomisation_of(design, data).tables, rng());
 }
 
 // Of each participant how much the share right at one level of the first factor exceeds that at the

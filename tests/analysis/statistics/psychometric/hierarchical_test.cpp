@@ -24,11 +24,11 @@ using Answers = std::vector<std::vector<Level>>;
 
 // In the proportions of a function; of a generator, drawn.
 std::vector<Level> person(double threshold, double slope, int trials,
-                          std::mt19937_64* generator = nullptr) {
+                          std::mt19937_64* generator = nullptr, double lapse = 0.0) {
   std::vector<Level> levels;
   for (const double value : values) {
     const double p =
-        core::proportion(PsychometricShape::log_gaussian, value, threshold, slope, 0.5, 0.0);
+        core::proportion(PsychometricShape::log_gaussian, value, threshold, slope, 0.5, lapse);
     const auto right = generator == nullptr
                            ? std::llround(p * trials)
                            : std::binomial_distribution<long long>{trials, p}(*generator);
@@ -55,6 +55,23 @@ TEST_CASE("of people who have answered much, the population has their t interval
   for (std::size_t i = 0; i < people.size(); ++i) {
     CHECK(std::log10(fit->people[i].threshold) == Approx(positions[i]).margin(0.02));
   }
+}
+
+// That each person's lapses are as likely as for anybody would make all thresholds too low.
+TEST_CASE("people who lapse alike have the thresholds that they have where their lapses are known",
+          "[analysis][psychometric]") {
+  Answers people;
+  for (const double position : {-1.35, -1.2, -1.12, -1.06, -1.0, -0.94, -0.88, -0.8, -0.65}) {
+    people.push_back(person(std::pow(10.0, position), 3.0, 50, nullptr, 0.02));
+  }
+  PsychometricModel known = choice_of_two;
+  known.lapse = {0.02, 0.02};
+  PsychometricModel free = choice_of_two;
+  free.lapse = {0.0, 0.1};
+  const auto truth = fit_population(known, people);
+  const auto fit = fit_population(free, people);
+  REQUIRE((truth && fit));
+  CHECK(std::log10(fit->threshold / truth->threshold) == Approx(0.0).margin(0.006));
 }
 
 // Of few answers the likelihood has several hills, between which the interval's end was looked for.

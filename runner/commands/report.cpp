@@ -267,8 +267,9 @@ void add_table_options(Command& command, const std::shared_ptr<ReportOptions>& o
                "With --counts: names that read alike are one, the first of them");
   command.flag("--pool-runs", options->table.pools_runs,
                "With --counts: several runs of one participant count together");
-  command.flag("--count-practice", options->table.counts_practice,
-               "With --counts: rows that a column calls practice count like others");
+  command.flag(
+      "--count-practice", options->table.counts_practice,
+      "With --counts: rows that a column calls practice, or not to be counted, count like others");
   command.flag("--are-counts", options->table.are_counts,
                "With --counts: numbers are counts even where they add up to 100, as percentages "
                "do, or one is the sum of the others");

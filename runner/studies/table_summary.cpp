@@ -186,8 +186,10 @@ Summary summary_of_matrix(NamedCsv table, const TableOptions& options, const std
   if (options.rows) {
     table.text = analysis::as_matrix(std::move(table.text), *options.rows);
   }
-  return analysis::summarise(analysis::read_counts(table.text, table.file, options.are_counts),
-                             title, protocols::identification().name(), modes);
+  const std::set<std::string> others{options.responses.begin(), options.responses.end()};
+  return analysis::summarise(
+      analysis::read_counts(table.text, table.file, options.are_counts, others), title,
+      protocols::identification().name(), modes);
 }
 }  // namespace
 

@@ -187,13 +187,6 @@ bool is_missing(const std::string& cell) {
   return std::ranges::find(known, cell) != known.end();
 }
 
-bool is_score(const std::string& name) {
-  static constexpr std::array known{"accuracy", "acc",      "recall",      "precision",
-                                    "f1",       "f1-score", "sensitivity", "specificity"};
-  return is_share(name) || name.find('%') != std::string::npos ||
-         std::ranges::any_of(known, [&](const char* word) { return is_same_word(name, word); });
-}
-
 bool is_no_count(const std::string& name) {
   static constexpr std::array parts{"trial", "index",    "order",    "time",
                                     "block", "position", "duration", "session"};

@@ -66,8 +66,6 @@ bool is_share(const std::string& name);
 bool may_be_counts(const std::string& name);
 // Whether it holds something else for certain: numbers of trials, times, …
 bool is_no_count(const std::string& name);
-// Whether it says how well a stimulus was recognised ("accuracy", "recall").
-bool is_score(const std::string& name);
 // "column 'n'", or by its place where it has no name.
 std::string described_column(const std::vector<std::string>& header, std::size_t place);
 

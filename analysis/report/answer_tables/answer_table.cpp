@@ -21,6 +21,7 @@
 #include "analysis/report/answer_tables/answer_weights.hpp"
 #include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/answer_tables/foreign_text.hpp"
+#include "analysis/report/answer_tables/other_columns.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
@@ -88,6 +89,7 @@ class AnswerReader {
       conditions_.push_back({static_cast<std::size_t>(found - header().begin()), condition.value,
                              condition.is_excluded});
     }
+    find_runs();
     // others hold something else: a share of right answers, the right answer itself
     if (places_.correct && !says_what_is_right(*places_.correct)) {
       not_compared_ = places_.correct;
@@ -121,7 +123,8 @@ class AnswerReader {
                        header(),
                        {},
                        places_.weight ? header()[*places_.weight] : "",
-                       header()[places_.response]};
+                       header()[places_.response],
+                       places_.time || !places_.possible_time.empty()};
     std::set<std::optional<std::size_t>> known{places_.stimulus,    places_.response,
                                                places_.participant, places_.time,
                                                places_.mode,        places_.block};
@@ -140,6 +143,33 @@ class AnswerReader {
     return std::ranges::all_of(conditions, [&](const PlacedCondition& condition) {
       return (row.cells[condition.place] == condition.value) != condition.is_excluded;
     });
+  }
+  // Columns that tell runs of one participant apart by their names, or have dates, but for what
+  // changes from row to row.
+  void find_runs() {
+    for (std::size_t place = 0; place < header().size() && !places_.is_own_export; ++place) {
+      if (place == places_.stimulus || place == places_.response || place == places_.participant ||
+          std::ranges::find(places_.runs, place) != places_.runs.end()) {
+        continue;
+      }
+      if (tells_runs(header()[place]) || all_in(place, looks_like_date)) {
+        places_.runs.push_back(place);
+      }
+    }
+    std::erase_if(places_.runs, [&](std::size_t place) { return changes_often(place); });
+  }
+  bool all_in(std::size_t place, bool (*is_so)(const std::string& cell)) const {
+    const auto rows = std::span{csv_.text.rows}.subspan(1);
+    return !rows.empty() && std::ranges::all_of(rows, [&](const CsvRow& row) {
+      return row.cells.size() == header().size() && is_so(row.cells[place]);
+    });
+  }
+  bool changes_often(std::size_t place) const {
+    std::set<std::string_view> values;
+    for (const CsvRow& row : std::span{csv_.text.rows}.subspan(1)) {
+      values.insert(row.cells.size() == header().size() ? row.cells[place] : "");
+    }
+    return 2 * values.size() > csv_.text.rows.size() - 1;
   }
   bool says_what_is_right(std::size_t place) const {
     return std::ranges::all_of(std::span{csv_.text.rows}.subspan(1), [&](const CsvRow& row) {
@@ -170,13 +200,14 @@ class AnswerReader {
   void check_holds_no_practice(const std::vector<const CsvRow*>& rows, std::size_t column) const {
     const std::string& name = header()[column];
     const auto is_practice = [&](const CsvRow* row) {
-      return says_practice(name, row->cells[column]);
+      return says_uncounted(name, row->cells[column]);
     };
     const auto practice = std::ranges::count_if(rows, is_practice);
     if (practice > 0 && practice < std::ssize(rows)) {
       const CsvRow& first = **std::ranges::find_if(rows, is_practice);
       refuse(first,
-             fmt::format("column '{0}' says '{1}': {2} of {3} rows are practice. Leave them out "
+             fmt::format("column '{0}' says '{1}': {2} of {3} rows are practice, or not to be "
+                         "counted. Leave them out "
                          "(--where '{0}!={1}', or '{0}=' and the value to be counted), or "
                          "--count-practice",
                          name, first.cells[column], practice, rows.size()));
@@ -463,6 +494,8 @@ AnswerTable read_answers(const std::vector<NamedCsv>& files, const AnswerReading
   check_responses(table.answers, read.origins, read.columns.back().response, responses);
   check_names(table.answers, files.front().file, stimuli, responses);
   check_right_answers(table.answers, read.origins);
+  check_other_columns(read.columns, table.answers, read.origins, reading,
+                      table.are_participants_known);
   if (table.are_participants_known) {
     table.pooled = several_runs(table.answers, read.origins, reading.pools_runs);
   }

@@ -16,20 +16,19 @@
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
+bool is_counted_already(const std::vector<results::AnswerRow>& answers) {
+  std::set<std::tuple<std::string_view, std::string_view, std::string_view>> kinds;
+  return std::ranges::all_of(answers, [&](const results::AnswerRow& answer) {
+    return kinds.emplace(answer.participant_id, answer.stimulus, answer.response).second;
+  });
+}
+
 namespace {
 using results::AnswerRow;
 using Answers = std::vector<AnswerRow>;
 
 [[noreturn]] void refuse_at(const AnswerOrigin& origin, const std::string& what) {
   throw core::InvalidInput{fmt::format("{}: {}", to_text(origin), what)};
-}
-
-// Whether each kind of answer (participant, stimulus, response) has one row.
-bool is_counted_already(const Answers& answers) {
-  std::set<std::tuple<std::string_view, std::string_view, std::string_view>> kinds;
-  return std::ranges::all_of(answers, [&](const AnswerRow& answer) {
-    return kinds.emplace(answer.participant_id, answer.stimulus, answer.response).second;
-  });
 }
 
 using Values = std::vector<double>;  // of a column, one an answer
@@ -111,6 +110,32 @@ bool vary_as_counts(const Answers& answers, const Values& values) {
   return varies && std::ranges::max(values) > 1.0;
 }
 
+// Whether no two rows of a participant have one value, or they never fall: of numbers of trials,
+// times and blocks. Counts do neither.
+bool follow_rows(const Answers& answers, const Values& values) {
+  std::map<std::string_view, Values> of_people;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    of_people[answers[i].participant_id].push_back(values[i]);
+  }
+  return std::ranges::all_of(of_people, [](auto& person) {
+    Values& own = person.second;
+    const bool never_falls = std::ranges::is_sorted(own);
+    std::ranges::sort(own);
+    return never_falls || std::ranges::adjacent_find(own) == own.end();
+  });
+}
+
+// Every stimulus that a participant had several times was answered in another way each time: four
+// times or more that is no chance, but a table in which each kind of answer has one row.
+bool are_kinds(const Answers& answers) {
+  constexpr std::size_t fewest = 4;
+  std::set<std::pair<std::string_view, std::string_view>> presented;
+  for (const AnswerRow& answer : answers) {
+    presented.emplace(answer.participant_id, answer.stimulus);
+  }
+  return answers.size() >= presented.size() + fewest;
+}
+
 // Of a table that was counted no column is known to say how often.
 void check_is_not_counted(const OtherColumns& columns, const Answers& answers,
                           const AnswerOrigins& origins) {
@@ -126,7 +151,8 @@ void check_is_not_counted(const OtherColumns& columns, const Answers& answers,
                             column));
     }
     if (values && are_whole(*values) && !number_trials(answers, *values) &&
-        (may_be_counts(name) || (!is_no_count(name) && vary_as_counts(answers, *values)))) {
+        (may_be_counts(name) || (!(is_no_count(name) && follow_rows(answers, *values)) &&
+                                 vary_as_counts(answers, *values)))) {
       refuse_at(origins.front(),
                 fmt::format("{} may say how many answers a row stands for: {}, or --weights none "
                             "if each row is one answer",
@@ -134,6 +160,12 @@ void check_is_not_counted(const OtherColumns& columns, const Answers& answers,
                             name.empty() ? "name it in the header and by --weights"
                                          : fmt::format("--weights '{}'", name)));
     }
+  }
+  if (are_kinds(answers)) {
+    refuse_at(origins.front(),
+              "each participant's answers to a stimulus differ from one another, as in a table "
+              "that has one row for each kind of answer (counted, or averaged): --weights names "
+              "the column that says how many there were, --weights none: each row is one answer");
   }
 }
 

@@ -13,7 +13,11 @@ struct OtherColumns {
   std::vector<std::size_t> places{};
   std::string weight{};    // by its name or as asked for; empty: none
   std::string response{};  // where the answers are
+  bool has_times{};        // a column that is read, or may be
 };
+
+// Whether each kind of answer (participant, stimulus, response) has one row.
+bool is_counted_already(const std::vector<results::AnswerRow>& answers);
 
 // Each answer as often as its row says, if rows say it; table.weight_column is that column. A table
 // that was counted has one row for each kind of answer. Throws InvalidInput where it is not clear

@@ -7,11 +7,13 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <span>
 #include <sstream>
 
 #include "analysis/report/answer_tables/answer_columns.hpp"
+#include "analysis/report/answer_tables/foreign_text.hpp"
 #include "analysis/statistics/csv_rows.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
@@ -217,16 +219,26 @@ void check_are_no_percentages(const ConfusionMatrix& matrix, const std::vector<C
   }
 }
 
-// Columns that say something else than how often an answer was given.
-void check_are_answers(const ConfusionMatrix& matrix, const std::vector<CsvRow>& lines,
-                       const std::string& file) {
+// Other columns say something else than how often an answer was given, or count missing ones.
+void check_are_answers(const ConfusionMatrix& matrix, const std::set<std::string>& others,
+                       const std::vector<CsvRow>& lines, const std::string& file) {
   for (const Item& response : matrix.responses) {
-    const bool is_none = is_missing(response.name);
-    if (is_none || (!response.is_alternative && is_score(response.name))) {
+    if (!response.is_alternative && !others.contains(response.name)) {
       refuse(file, lines.front().line,
-             fmt::format("column '{}' counts {}: leave it out (--are-counts: it is an answer like "
-                         "the others)",
-                         response.name, is_none ? "trials without an answer" : "no answers"));
+             fmt::format("column '{0}' is no stimulus: if it counts an answer that names none, say "
+                         "so by --responses '{0}', else leave it out",
+                         response.name));
+    }
+  }
+}
+
+void check_differ(const std::vector<Item>& items, const std::string& file, int line) {
+  std::map<std::string, std::string> known;  // by what is read
+  for (const Item& item : items) {
+    const auto [other, is_new] = known.emplace(as_read(item.name), item.name);
+    if (!is_new) {
+      refuse(file, line,
+             fmt::format("'{}' and '{}' read alike: add up what is one", other->second, item.name));
     }
   }
 }
@@ -276,15 +288,18 @@ ConfusionMatrix from_matrix(const CsvText& csv, const std::vector<CsvRow>& lines
 }
 }  // namespace
 
-ConfusionMatrix read_counts(const CsvText& csv, const std::string& file, bool are_counts) {
+ConfusionMatrix read_counts(const CsvText& csv, const std::string& file, bool are_counts,
+                            const std::set<std::string>& others) {
   const std::vector<CsvRow>& lines = checked_rows(csv.rows, file);
   ConfusionMatrix matrix = from_matrix(csv, lines, file);
   if (!are_counts) {
-    check_are_answers(matrix, lines, file);
     check_has_no_margins(matrix, lines, file);
     check_are_no_percentages(matrix, lines, file);
   }
   check_is_named(matrix.stimuli, matrix.responses, lines, file);
+  check_differ(matrix.stimuli, file, lines.front().line);
+  check_differ(matrix.responses, file, lines.front().line);
+  check_are_answers(matrix, others, lines, file);
   if (matrix.total() == 0) {
     refuse(file, lines.front().line, "holds no answers");
   }

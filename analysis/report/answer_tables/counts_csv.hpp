@@ -8,10 +8,12 @@
 namespace tapstudy::analysis {
 // A confusion matrix from a table of counts, one row per stimulus, counts below the responses:
 //   stimulus[,factor:NAME…],RESPONSE,RESPONSE,…
-// Factors are marked, with their levels below. Throws InvalidInput with file:line, unless they are
-// said to be counts also where rows, columns or all numbers add up to 100, as percentages do, one
-// is the sum of others, or a column is called after missing answers or scores ("NA", "accuracy").
-ConfusionMatrix read_counts(const CsvText& csv, const std::string& file, bool are_counts = false);
+// Factors are marked, with their levels below; a response that is no stimulus is one of `others`.
+// Throws InvalidInput with file:line, for names that read alike, and, unless they are said to be
+// counts, where rows, columns or all numbers add up to 100, as percentages do, or one is the sum of
+// others.
+ConfusionMatrix read_counts(const CsvText& csv, const std::string& file, bool are_counts = false,
+                            const std::set<std::string>& others = {});
 // Which of the two a table's rows stand for, where its corner does not say "stimulus".
 enum class MatrixRows { stimuli, responses };
 // The same table with that corner and stimuli as rows. R's write.table leaves the corner out.

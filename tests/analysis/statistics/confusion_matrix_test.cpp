@@ -21,7 +21,7 @@ using namespace tapstudy::analysis;
 namespace {
 ConfusionMatrix matrix_from(const std::string& text) {
   std::istringstream stream{text};
-  return read_counts(read_csv(stream, "counts.csv"), "counts.csv");
+  return read_counts(read_csv(stream, "counts.csv"), "counts.csv", false, {"unsure"});
 }
 std::string refusal(const std::string& text) {
   try {
@@ -279,15 +279,21 @@ TEST_CASE("a matrix of percentages is refused, unless they are said to be counts
   CHECK(refusal("stimulus,a,b\na,8.0,1.0\nb,4.0,5.0\n") == "accepted");
 }
 
-TEST_CASE("columns of missing answers and of scores are no answers, unless that is said",
+TEST_CASE("a column of a matrix that is no stimulus is an answer only where that is said",
           "[analysis][confusion]") {
-  const std::string name = GENERATE("NA", "<NA>", "accuracy", "Recall", "% correct");
+  const std::string name =
+      GENERATE("NA", "accuracy", "% correct", "rt", "d'", "id", "correct", "unsure?");
   const std::string text = "stimulus,a,b," + name + "\na,8,2,5\nb,3,7,2\n";
-  CHECK_THAT(refusal(text),
-             Contains("counts.csv:1: column '" + name + "' counts ") && Contains("--are-counts"));
+  CHECK_THAT(refusal(text), Contains("counts.csv:1: column '" + name + "' is no stimulus") &&
+                                Contains("--responses '" + name + "'"));
   std::istringstream stream{text};
-  CHECK(read_counts(read_csv(stream, "counts.csv"), "counts.csv", true).total() == 27);
-  CHECK(refusal("stimulus,a,b,unsure\na,8,2,5\nb,3,7,2\n") == "accepted");
+  CHECK(read_counts(read_csv(stream, "counts.csv"), "counts.csv", false, {name}).total() == 27);
+}
+
+TEST_CASE("names of a matrix that read alike are refused", "[analysis][confusion]") {
+  CHECK_THAT(refusal("stimulus,a,b,A\na,8,2,5\nb,3,7,2\n"), Contains("'a' and 'A' read alike"));
+  CHECK_THAT(refusal("stimulus,a,b,1,01\na,8,2,5,1\nb,3,7,2,1\n1,0,0,3,1\n"),
+             Contains("'1' and '01' read alike"));
 }
 
 TEST_CASE("a row for each participant and stimulus is no matrix, and the refusal says what to do",

@@ -1,0 +1,27 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "analysis/report/answer_tables/answer_weights.hpp"
+namespace tapstudy::analysis {
+// The words of a column's name or of a cell, in small letters: "isPracticeTrial" has three.
+std::vector<std::string> words_of_name(const std::string& name);
+
+// Whether a column of that name tells runs of one participant apart: "sessionID", "Datum", "visit".
+bool tells_runs(const std::string& name);
+
+// "2026-11-02", "02.11.26 14:05": another one with each run, whatever the column is called.
+bool looks_like_date(const std::string& cell);
+
+// What columns say by their values, whatever they are called, so that to leave them aside would
+// change a number. Throws InvalidInput that says which option decides:
+// - two values of which one stands at one answer to each stimulus, as if these were right, and at
+//   others than the names say; for each stimulus an answer that is not its name;
+// - where participants are not known, few values, each in many rows one after the other;
+// - trials of one participant with the same number, or rows that are the same to the letter;
+// - a text at the first few answers of every participant, and never later: as practice has it.
+void check_other_columns(const std::vector<OtherColumns>& files,
+                         const std::vector<results::AnswerRow>& answers,
+                         const AnswerOrigins& origins, const AnswerReading& reading,
+                         bool are_participants_known);
+}  // namespace tapstudy::analysis

@@ -43,19 +43,6 @@ std::optional<Interval> range_of(const PersonalValues& values, const std::string
              : std::optional{Interval{scaled(beyond->second.low), scaled(beyond->second.high)}};
 }
 
-// Of those who have values of both, or are known to lie beyond what was presented.
-std::vector<Interval> differences(const PersonalValues& first, const PersonalValues& second) {
-  std::vector<Interval> found;
-  for (const std::string& participant : participants_of(first)) {
-    const auto own = range_of(first, participant);
-    const auto other = range_of(second, participant);
-    if (own && other) {
-      found.push_back({own->low - other->high, own->high - other->low});
-    }
-  }
-  return found;
-}
-
 std::optional<PairedContrast> contrast_of(const std::vector<Interval>& differences) {
   if (differences.size() < 2) {
     return std::nullopt;
@@ -72,9 +59,22 @@ std::optional<PairedContrast> contrast_of(const std::vector<Interval>& differenc
 
 }  // namespace
 
+std::vector<Interval> differences_between(const PersonalValues& first,
+                                          const PersonalValues& second) {
+  std::vector<Interval> found;
+  for (const std::string& participant : participants_of(first)) {
+    const auto own = range_of(first, participant);
+    const auto other = range_of(second, participant);
+    if (own && other) {
+      found.push_back({own->low - other->high, own->high - other->low});
+    }
+  }
+  return found;
+}
+
 std::optional<PairedContrast> contrast_of(const PersonalValues& first,
                                           const PersonalValues& second) {
-  return contrast_of(differences(first, second));
+  return contrast_of(differences_between(first, second));
 }
 
 std::optional<PairedContrast> contrast_with(const PersonalValues& values, double number) {

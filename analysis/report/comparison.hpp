@@ -9,6 +9,11 @@
 #include "analysis/report/summary.hpp"
 #include "analysis/statistics/population/means.hpp"
 namespace tapstudy::analysis {
+// Each participant's difference between two blocks of one measure, of ratios their logarithms: a
+// range where one of both lies beyond what was presented. Whoever has nothing in one has none.
+std::vector<Interval> differences_between(const PersonalValues& first,
+                                          const PersonalValues& second);
+
 // Two blocks of one measure, within participants; of ratios their logarithms. Whoever is known to
 // lie beyond what was presented takes part (censored_contrast). nullopt: fewer than two people.
 std::optional<PairedContrast> contrast_of(const PersonalValues& first,

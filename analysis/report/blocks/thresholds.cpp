@@ -321,7 +321,12 @@ std::vector<CitingText> remarks_on_mean(const ThresholdResults& results) {
     remarks.push_back(
         fmt::format("It leaves out {} without a threshold, which biases it{}.",
                     without == 1 ? "the participant" : fmt::format("the {} participants", without),
-                    results.population ? "; the fit of all participants together does not" : ""));
+                    results.population
+                        ? "; the fit of all participants together does not"
+                        : ". There is no fit of all participants together, whose mean would lie "
+                          "beyond the levels, or who are too few or have too many levels; the "
+                          "block's result is by a normal likelihood of the logarithms, with those "
+                          "who lie beyond the levels as such, if it can be told"));
   }
   return remarks;
 }
@@ -361,9 +366,35 @@ std::vector<CitingText> threshold_remarks(const BlockDesign& design,
 }
 
 namespace {
+double of_log10(double log) {
+  return std::pow(10.0, log);
+}
+
+// In place of a mean that would leave people out: of a normal distribution of the logarithms, of
+// whom some are known to lie beyond the levels. Unset where its interval has an open end.
+std::optional<MainResult> with_those_beyond(MainResult result, const ThresholdResults& results) {
+  std::vector<Interval> logarithms;
+  for (const ParticipantThreshold& person : results.participants) {
+    const auto threshold = likeliest_threshold(person);
+    if (const auto range = beyond_levels(person)) {
+      logarithms.push_back({std::log10(range->low), std::log10(range->high)});
+    } else if (threshold && *threshold > 0.0) {
+      logarithms.push_back({std::log10(*threshold), std::log10(*threshold)});
+    }
+  }
+  constexpr double confidence = 0.95;
+  const CensoredMean found = censored_mean(logarithms, confidence);
+  if (!std::isfinite(found.interval.low) || !std::isfinite(found.interval.high)) {
+    return std::nullopt;
+  }
+  result.estimate = of_log10(found.mean);
+  result.range = {of_log10(found.interval.low), of_log10(found.interval.high)};
+  result.people = static_cast<int>(logarithms.size());
+  return result;
+}
+
 // Of the fit of all where the mean would leave somebody out.
 std::optional<MainResult> mean_threshold(const VariedAxis& axis, const ThresholdResults& results) {
-  const auto from_log = [](double log) { return std::pow(10.0, log); };
   MainResult mean;
   mean.name = axis.is_fraction ? "Weber fraction of " + axis.name.quantity
                                : "just noticeable difference of " + axis.name.with_unit();
@@ -379,9 +410,12 @@ std::optional<MainResult> mean_threshold(const VariedAxis& axis, const Threshold
   if (!results.mean_log) {
     return std::nullopt;
   }
-  mean.estimate = from_log(results.mean_log->mean);
-  mean.range = {from_log(results.mean_log->interval.low),
-                from_log(results.mean_log->interval.high)};
+  if (results.leaves_out_people()) {
+    return with_those_beyond(mean, results);
+  }
+  mean.estimate = of_log10(results.mean_log->mean);
+  mean.range = {of_log10(results.mean_log->interval.low),
+                of_log10(results.mean_log->interval.high)};
   mean.people = results.mean_log->participants;
   return mean;
 }

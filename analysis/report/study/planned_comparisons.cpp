@@ -66,7 +66,7 @@ HypothesisResult not_tested(const PlannedComparison& planned, const std::string&
 }
 
 HypothesisResult equivalence_of(const PlannedComparison& planned,
-                                const std::vector<double>& differences, std::size_t all,
+                                const std::vector<Interval>& differences, std::size_t all,
                                 bool is_ratio) {
   if (differences.size() < 2) {
     return not_tested(
@@ -76,7 +76,11 @@ HypothesisResult equivalence_of(const PlannedComparison& planned,
   const EquivalenceTest test = equivalence_test(differences, bound);
   const auto shown = [&](double value) { return rounded(is_ratio ? std::exp(value) : value); };
   HypothesisResult result = not_tested(
-      planned, fmt::format("two one-sided paired t tests against {} and {}; the larger p; {}",
+      planned, fmt::format("two one-sided paired t tests{} against {} and {}; the larger p; {}",
+                           std::ranges::all_of(
+                               differences, [](const Interval& one) { return one.low == one.high; })
+                               ? ""
+                               : " by the likelihood, with those beyond the levels,",
                            shown(-bound), shown(bound), n_of_all(differences.size(), all)));
   result.p = test.p;
   result.finding =
@@ -87,12 +91,13 @@ HypothesisResult equivalence_of(const PlannedComparison& planned,
 
 HypothesisResult equivalent_stimuli(const PlannedComparison& planned,
                                     const MeansByStimulus& means) {
-  std::vector<double> differences;
+  std::vector<Interval> differences;
   for (const auto& [participant, of] : means) {
     const auto first = of.find(planned.hypothesis.stimulus);
     const auto second = of.find(planned.other_stimulus);
     if (first != of.end() && second != of.end()) {
-      differences.push_back(first->second.mean() - second->second.mean());
+      const double difference = first->second.mean() - second->second.mean();
+      differences.push_back({difference, difference});
     }
   }
   return equivalence_of(planned, differences, means.size(), false);
@@ -107,15 +112,7 @@ HypothesisResult equivalent_blocks(const PlannedComparison& planned,
   if (first->is_ratio && planned.within <= 1.0) {
     return not_tested(planned, "their values are compared by ratios: `within` is to be above 1");
   }
-  std::vector<double> differences;
-  for (const auto& [participant, value] : first->by_participant) {
-    const auto other = second->by_participant.find(participant);
-    if (other != second->by_participant.end()) {
-      differences.push_back(first->is_ratio ? std::log(value / other->second)
-                                            : value - other->second);
-    }
-  }
-  return equivalence_of(planned, differences,
+  return equivalence_of(planned, differences_between(*first, *second),
                         static_cast<std::size_t>(number_in_both(*first, *second)), first->is_ratio);
 }
 
@@ -159,13 +156,13 @@ HypothesisResult different_blocks(const PlannedComparison& planned,
 HypothesisResult below_level(const PlannedComparison& planned,
                              const std::optional<PersonalValues>& values) {
   const auto contrast = values ? contrast_with(*values, *planned.below) : std::nullopt;
-  if (!contrast || std::isnan(contrast->mean)) {
+  if (!contrast) {
     return not_tested(planned, "fewer than two participants have values");
   }
   HypothesisResult result =
       contrast_result(planned, *contrast, *values, participants_of(*values).size(),
                       fmt::format("{}", rounded(*planned.below)));
-  result.p = contrast->mean < 0.0 ? 0.5 * contrast->p : 1.0 - 0.5 * contrast->p;
+  result.p = contrast->direction < 0.0 ? 0.5 * contrast->p : 1.0 - 0.5 * contrast->p;
   return result;
 }
 

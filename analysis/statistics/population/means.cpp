@@ -375,6 +375,7 @@ PairedContrast paired_contrast(const std::vector<double>& differences, std::uint
                 static_cast<double>(differences.size());
   result.p = test.p;
   result.is_exact = test.is_exact;
+  result.direction = result.mean;
   const bool are_equal =
       std::ranges::all_of(differences, [&](double value) { return value == differences.front(); });
   if (differences.size() > 1 && !are_equal) {
@@ -465,27 +466,49 @@ std::vector<double> signed_ranks(const std::vector<Interval>& differences) {
 }
 }  // namespace
 
-PairedContrast censored_contrast(const std::vector<Interval>& differences, std::uint64_t seed) {
-  const SignFlipTest test = sign_flip_test(signed_ranks(differences), seed);
-  PairedContrast result{
-      std::nan(""), {}, test.p, static_cast<int>(differences.size()), test.is_exact};
+CensoredMean censored_mean(const std::vector<Interval>& differences, double confidence,
+                           const std::vector<double>& values) {
+  if (differences.empty()) {
+    throw core::InvalidInput{"there are no differences"};
+  }
   if (std::ranges::count_if(differences, is_exact) < 2) {
-    return result;
+    throw core::NotEstimable{"fewer than two values are known, but for being beyond the levels"};
   }
   const CensoredNormal likelihood{differences};
   const double reach = 20.0 * likelihood.length();
   const auto profile = [&](double mean) { return likelihood.profile(mean); };
   const Minimum best = minimum(profile, likelihood.low() - reach, likelihood.high() + reach);
   const auto n = static_cast<double>(differences.size());
-  const double t = t_quantile(0.975, n - 1.0);
-  const double limit = n * std::log1p(t * t / (n - 1.0));
+  const double quantile = t_quantile(0.5 * (1.0 + confidence), n - 1.0);
+  const double limit = n * std::log1p(quantile * quantile / (n - 1.0));
   const auto excess = [&](double mean) { return 2.0 * (profile(mean) - best.value) - limit; };
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double low = best.at - 10.0 * reach;
   const double high = best.at + 10.0 * reach;
-  result.mean = best.at;
-  result.interval = {excess(low) <= 0.0 ? -infinity : root(excess, low, best.at),
-                     excess(high) <= 0.0 ? infinity : root(excess, best.at, high)};
+  CensoredMean found{best.at,
+                     {excess(low) <= 0.0 ? -infinity : root(excess, low, best.at),
+                      excess(high) <= 0.0 ? infinity : root(excess, best.at, high)},
+                     {}};
+  for (const double value : values) {
+    const double deviance = std::max(0.0, 2.0 * (profile(value) - best.value));
+    found.t.push_back(
+        std::copysign(std::sqrt((n - 1.0) * std::expm1(deviance / n)), best.at - value));
+  }
+  return found;
+}
+
+PairedContrast censored_contrast(const std::vector<Interval>& differences, std::uint64_t seed) {
+  const std::vector<double> ranks = signed_ranks(differences);
+  const SignFlipTest test = sign_flip_test(ranks, seed);
+  PairedContrast result{std::nan(""),  {},
+                        test.p,        static_cast<int>(differences.size()),
+                        test.is_exact, std::accumulate(ranks.begin(), ranks.end(), 0.0)};
+  if (std::ranges::count_if(differences, is_exact) > 1) {
+    constexpr double confidence = 0.95;
+    const CensoredMean found = censored_mean(differences, confidence);
+    result.mean = found.mean;
+    result.interval = found.interval;
+  }
   return result;
 }
 

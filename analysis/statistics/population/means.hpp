@@ -94,7 +94,8 @@ struct PairedContrast {
   std::optional<Interval> interval;  // 95 %, by t; unset for one participant or equal differences
   double p{};                        // two-sided, by sign_flip_p
   int participants{};
-  bool is_exact{};  // p is of all sign patterns
+  bool is_exact{};     // p is of all sign patterns
+  double direction{};  // what p is of, above or below 0: the mean, or the sum of signed ranks
 };
 
 // The permutation test of paired differences (Fisher 1935): if the conditions do not matter, each
@@ -119,6 +120,18 @@ PairedContrast paired_contrast(const std::vector<double>& differences, std::uint
 // range by its least size; a range on both sides of 0 has none. Throws InvalidInput as
 // sign_flip_test.
 PairedContrast censored_contrast(const std::vector<Interval>& differences, std::uint64_t seed);
+
+// That mean alone, its interval of a confidence, and its distance from values as t of n - 1 degrees
+// of freedom has it: the signed root of (n - 1) (exp(2 (l_max - l(value)) / n) - 1), which of exact
+// differences is t. Throws InvalidInput for no differences, NotEstimable where fewer than two are
+// exact.
+struct CensoredMean {
+  double mean{};
+  Interval interval;
+  std::vector<double> t;  // from each of the values
+};
+CensoredMean censored_mean(const std::vector<Interval>& differences, double confidence,
+                           const std::vector<double>& values = {});
 
 // The 95 % interval of the mean of values within bounds, which it does not leave: by t with a
 // variance that is in proportion to (mean - low) (high - mean), as in mean_share. Unset if all are

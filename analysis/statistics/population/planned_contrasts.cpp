@@ -40,6 +40,25 @@ EquivalenceTest equivalence_test(const std::vector<double>& differences, double 
   return test;
 }
 
+EquivalenceTest equivalence_test(const std::vector<Interval>& differences, double bound) {
+  std::vector<double> exact;
+  for (const Interval& range : differences) {
+    if (range.low == range.high) {
+      exact.push_back(range.low);
+    }
+  }
+  if (exact.size() == differences.size()) {
+    return equivalence_test(exact, bound);
+  }
+  constexpr double confidence = 0.9;
+  const CensoredMean of = censored_mean(differences, confidence, {-bound, bound});
+  const double freedom = static_cast<double>(differences.size()) - 1.0;
+  EquivalenceTest test{of.mean, of.interval, upper_t_p(of.t[0], freedom),
+                       upper_t_p(-of.t[1], freedom), 0.0};
+  test.p = std::max(test.p_above, test.p_below);
+  return test;
+}
+
 namespace {
 using Interaction = std::vector<double>;  // of all cells, row by row
 

@@ -16,6 +16,9 @@ struct EquivalenceTest {
   double p{};
 };
 EquivalenceTest equivalence_test(const std::vector<double>& differences, double bound);
+// The same of differences of which some are only known to lie in a range: by their normal
+// likelihood (censored_mean), which of exact ones is t. Throws NotEstimable as that, too.
+EquivalenceTest equivalence_test(const std::vector<Interval>& differences, double bound);
 
 // Whether the effects of two factors depend on one another. values[person] has a row a level of the
 // first factor and a column a level of the second. The statistic is F of the interaction of

@@ -111,11 +111,14 @@ TEST_CASE("blocks are equivalent by ratios where they measure ratios",
       0.5, std::numeric_limits<double>::infinity()};
   const PlannedComparison planned{{"same", "", ""}, {}, "", "second", 1.25, {}};
   const HypothesisResult found = study.test(planned);
-  const EquivalenceTest test = equivalence_test(
-      {std::log(0.10 / 0.11), std::log(0.20 / 0.19), std::log(0.30 / 0.31)}, std::log(1.25));
   REQUIRE(found.p);
-  CHECK(*found.p == Approx(test.p));
-  CHECK_THAT(found.test, Contains("against 0.8 and 1.25") && Contains("3 of 4 participants"));
+  CHECK_THAT(found.test, Contains("with those beyond the levels, against 0.8 and 1.25") &&
+                             Contains("4 participants"));
+  const EquivalenceTest of_three = equivalence_test(
+      std::vector{std::log(0.10 / 0.11), std::log(0.20 / 0.19), std::log(0.30 / 0.31)},
+      std::log(1.25));
+  CHECK(of_three.p < 0.05);
+  CHECK(*found.p > 0.05);  // by construction the fourth is not equal
   SECTION("and not where one of them measures something else") {
     study.blocks.back()->personal->measure = "share";
     CHECK_FALSE(study.test(planned).p);
@@ -146,4 +149,13 @@ TEST_CASE("a claim about thresholds is tested of all, also of those beyond the l
   REQUIRE(below.p);
   CHECK(*below.p == Approx(1.0 / 256.0));
   CHECK(*study.test({{"finer", "", ""}, {}, "", "", 0.0, 0.05}).p == Approx(255.0 / 256.0));
+  PersonalValues& first = *study.blocks.front()->personal;
+  for (const auto& [name, threshold] : first.by_participant) {
+    first.beyond[name] = {0.0, 0.05};  // right at every level that was presented
+  }
+  first.by_participant.clear();
+  const HypothesisResult of_none = study.test({{"fine", "", ""}, {}, "", "", 0.0, 0.16});
+  REQUIRE(of_none.p);
+  CHECK(*of_none.p == Approx(1.0 / 256.0));
+  CHECK_THAT(of_none.finding, Contains("by order alone"));
 }

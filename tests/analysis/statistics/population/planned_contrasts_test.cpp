@@ -25,8 +25,8 @@ TEST_CASE("equivalence is two one-sided tests by R's t.test", "[analysis][planne
     CHECK(test.interval_90.high == Approx(by_r[3]));
     CHECK((test.p < 0.05) == (by_r[2] > -bound && by_r[3] < bound));
   }
-  CHECK_THROWS_AS(equivalence_test({0.1, 0.1, 0.1}, 1.0), core::NotEstimable);
-  CHECK_THROWS_AS(equivalence_test({0.1}, 1.0), core::InvalidInput);
+  CHECK_THROWS_AS(equivalence_test(std::vector{0.1, 0.1, 0.1}, 1.0), core::NotEstimable);
+  CHECK_THROWS_AS(equivalence_test(std::vector{0.1}, 1.0), core::InvalidInput);
   CHECK_THROWS_AS(equivalence_test(differences, 0.0), core::InvalidInput);
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "analysis/statistics/population/means.hpp"
+#include "analysis/statistics/population/planned_contrasts.hpp"
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
 #include "support/catch.hpp"
@@ -366,6 +367,12 @@ TEST_CASE("the likelihood of differences that are all exact has the interval of 
   CHECK(found.mean == Approx(paired_contrast(exact, 1).mean).epsilon(1e-5));
   CHECK(found.interval->low == Approx(by_t.low).epsilon(1e-4));
   CHECK(found.interval->high == Approx(by_t.high).epsilon(1e-4));
+  ranges.front() = {exact.front() - 1e-9, exact.front() + 1e-9};
+  const EquivalenceTest by_t_tests = equivalence_test(exact, 0.5);
+  const EquivalenceTest by_likelihood = equivalence_test(ranges, 0.5);
+  CHECK(by_likelihood.interval_90.high == Approx(by_t_tests.interval_90.high).epsilon(1e-4));
+  CHECK(by_likelihood.p_above == Approx(by_t_tests.p_above).epsilon(1e-3));
+  CHECK(by_likelihood.p_below == Approx(by_t_tests.p_below).epsilon(1e-3));
 }
 
 TEST_CASE("differences of which some are ranges have R's normal likelihood",

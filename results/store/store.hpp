@@ -94,8 +94,9 @@ class Store {
   // Supersedes the participant's answer to that trial. Throws StoreError if there is none.
   void add_correction(const CorrectionRow& correction, const OperatorActionRow& action);
 
-  // The participant's latest session, to resume it.
-  std::optional<SessionRow> latest_session(const std::string& participant_id);
+  // The participant's latest session, or the latest in which there was a trial.
+  std::optional<SessionRow> latest_session(const std::string& participant_id,
+                                           bool has_trials = false);
   // The participant whose name differs from this one in capital letters at most.
   std::optional<std::string> participant_ignoring_case(const std::string& participant_id);
   // The session in which a trial of that number was presented to the participant last.

@@ -161,11 +161,13 @@ AlternativesOfTrials Store::alternatives_where(const char* condition,
   return alternatives;
 }
 
-std::optional<SessionRow> Store::latest_session(const std::string& participant_id) {
-  Statement row{database_, fmt::format("SELECT {} FROM session JOIN participant "
-                                       "USING (participant_id) WHERE participant_id = ? "
-                                       "ORDER BY session_id DESC LIMIT 1",
-                                       session_columns())};
+std::optional<SessionRow> Store::latest_session(const std::string& participant_id,
+                                                bool has_trials) {
+  Statement row{database_,
+                fmt::format("SELECT {} FROM session JOIN participant USING (participant_id) "
+                            "WHERE participant_id = ?{} ORDER BY session_id DESC LIMIT 1",
+                            session_columns(),
+                            has_trials ? " AND session_id IN (SELECT session_id FROM trial)" : "")};
   row.bind(participant_id);
   return row.step() ? std::optional{session_from(row, database_.file())} : std::nullopt;
 }

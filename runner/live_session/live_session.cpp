@@ -174,7 +174,8 @@ void resume(const results::SessionRow& earlier, const protocols::Protocol& proto
 
 // Where the protocol has sessions: which of them it is. Only its trials are left then.
 void take_up_session(const SessionRequest& request, const protocols::Protocol& protocol,
-                     const std::optional<results::SessionRow>& earlier, BegunSession& session) {
+                     const std::optional<results::SessionRow>& earlier, results::Store& store,
+                     BegunSession& session) {
   if (protocol.sessions.empty()) {
     return;
   }
@@ -187,8 +188,10 @@ void take_up_session(const SessionRequest& request, const protocols::Protocol& p
     session.row.resumes.reset();
     session.resumed_since_utc.clear();
   }
-  const auto problem = earlier && request.resume == Resume::no
-                           ? too_early_or_late(*planned, *earlier, request.now())
+  // a session that was opened and had no trial is no visit
+  const auto visit = store.latest_session(request.participant_id, true);
+  const auto problem = visit && request.resume == Resume::no
+                           ? too_early_or_late(*planned, *visit, request.now())
                            : std::nullopt;
   if (problem && !request.at_any_time) {
     throw core::InvalidInput{
@@ -258,7 +261,7 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
     if (earlier) {
       resume(*earlier, protocol, store, session);
     }
-    take_up_session(request, protocol, earlier, session);
+    take_up_session(request, protocol, earlier, store, session);
     store.add_session(session.row);
   });
   add_note(session, store);

@@ -110,6 +110,19 @@ TEST_CASE("a session that is not done is gone on with, never passed over", "[run
   CHECK_THROWS_WITH(laboratory.begin(), Contains("6 days too early"));
 }
 
+TEST_CASE("a session that is resumed with nothing left does not move the day of the next one",
+          "[runner][days]") {
+  VisitedLaboratory laboratory;
+  laboratory.complete(laboratory.begin());
+  laboratory.now += 24 * hour;
+  CHECK(laboratory.begin(runner::Resume::yes).done.size() ==
+        laboratory.begin(runner::Resume::yes).schedule.size());
+  laboratory.now += hour;
+  const auto next = laboratory.begin();
+  CHECK(next.row.planned_session == "day_2");
+  CHECK(next.note.empty());
+}
+
 TEST_CASE("too early or too late is refused with when it may be, or noted", "[runner][days]") {
   VisitedLaboratory laboratory;
   laboratory.complete(laboratory.begin());

@@ -205,6 +205,73 @@ CitingText methods(const Summary& summary) {
 }
 
 namespace {
+// By how they are adjusted for their number.
+struct TestCounts {
+  std::size_t declared{};
+  std::size_t of_pairs{};  // adjusted within their table
+  std::size_t others{};
+};
+
+// Tables have a column of p, and one beside it where these are adjusted.
+void count_tests(const ReportTable& table, TestCounts& counts) {
+  const auto has = [](const Column& column, const char* key) {
+    return std::ranges::find(column.keys, key) != column.keys.end();
+  };
+  const bool are_adjusted = std::ranges::any_of(
+      table.columns, [&](const Column& column) { return has(column, "p_holm"); });
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const auto& keys = table.columns[i].keys;
+    const auto place = static_cast<std::size_t>(std::ranges::find(keys, "p") - keys.begin());
+    for (const std::vector<Cell>& row : table.rows) {
+      if (place < keys.size() && std::holds_alternative<double>(row[i].values.at(place))) {
+        ++(are_adjusted ? counts.of_pairs : counts.others);
+      }
+    }
+  }
+}
+
+TestCounts tests_in(const Summary& summary) {
+  TestCounts counts;
+  for (const auto& block : summary.blocks) {
+    counts.declared += static_cast<std::size_t>(std::ranges::count_if(
+        block->hypotheses, [](const HypothesisResult& result) { return result.p.has_value(); }));
+    for (const ReportSection& section : block->sections) {
+      std::ranges::for_each(section.tables,
+                            [&](const ReportTable& table) { count_tests(table, counts); });
+    }
+  }
+  for (const ReportSection& section : summary.sections) {
+    std::ranges::for_each(section.tables,
+                          [&](const ReportTable& table) { count_tests(table, counts); });
+  }
+  return counts;
+}
+}  // namespace
+
+std::string tests_in_words(const Summary& summary) {
+  const TestCounts counts = tests_in(summary);
+  std::vector<std::string> parts;
+  if (counts.declared > 0) {
+    parts.push_back(fmt::format("{} of declared hypotheses{}", counts.declared,
+                                counts.declared > 1 ? ", adjusted for one another" : ""));
+  }
+  if (counts.of_pairs > 0) {
+    parts.push_back(fmt::format("{} adjusted within their table", counts.of_pairs));
+  }
+  if (counts.others > 0) {
+    constexpr double alpha = 0.05;
+    parts.push_back(
+        fmt::format("{} neither declared nor adjusted (if nothing were true, about {} "
+                    "of them would be below .05)",
+                    counts.others, rounded(alpha * static_cast<double>(counts.others), 2)));
+  }
+  const std::size_t all = counts.declared + counts.of_pairs + counts.others;
+  return all == 0 ? ""
+                  : fmt::format("This report holds {} test{}: {}.", all, all == 1 ? "" : "s",
+                                fmt::join(parts, "; "));
+}
+
+namespace {
 std::vector<std::string> names_in(const Summary& summary) {
   std::vector<std::string> names;
   for (const auto& block : summary.blocks) {

@@ -62,6 +62,10 @@ std::string banner(const Summary& summary);
 // A paragraph on how the numbers were computed, for a methods section.
 CitingText methods(const Summary& summary);
 
+// How many tests the report holds, and how they are adjusted for their number, in a sentence; empty
+// where there are none.
+std::string tests_in_words(const Summary& summary);
+
 // Leaves out of a report all blocks and sections but those named. What a report must say anyway,
 // whose data these are and what was not as planned, stays.
 // Throws InvalidInput for a name that is none, with those that there are.

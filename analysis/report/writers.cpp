@@ -191,10 +191,29 @@ std::vector<std::string> references_of(const Summary& summary) {
   return references;
 }
 
+namespace {
+// "12 participants, 2 more excluded, 1 session unfinished."
+std::string people_in_words(const Summary& summary) {
+  std::string words =
+      fmt::format("{} participant{}", summary.participants, summary.participants == 1 ? "" : "s");
+  if (!summary.excluded.empty()) {
+    words += fmt::format(", {} more excluded", summary.excluded.size());
+  }
+  if (!summary.unfinished.empty()) {
+    words += fmt::format(", {} session{} unfinished", summary.unfinished.size(),
+                         summary.unfinished.size() == 1 ? "" : "s");
+  }
+  return words + ".";
+}
+}  // namespace
+
 void write_html(std::ostream& out, const Summary& summary) {
   begin_page(out, summary.title);
   if (const std::string warning = banner(summary); !warning.empty()) {
     core::print(out, "<p class=simulated>{}</p>\n", escaped(warning));
+  }
+  if (summary.participants > 0) {
+    core::print(out, "<p>{} {}</p>\n", people_in_words(summary), escaped(tests_in_words(summary)));
   }
   if (!summary.unfinished.empty()) {
     core::print(out, "<p>Unfinished sessions: {}.</p>\n",

@@ -19,6 +19,8 @@
 #include "core/model/joints/joints.hpp"
 #include "core/model/modes/modal_solver.hpp"
 #include "core/model/refinement/refinement.hpp"
+#include "core/model/shells/shell_body.hpp"
+#include "core/model/shells/shell_elements.hpp"
 namespace tapstudy::core {
 // Extracts the touchable part of a solved body: the upper face of a box, the entire surface of any
 // other solid. Nodes are renumbered from 0.
@@ -85,6 +87,21 @@ Modes cubic_modes(const BodySpec& body, DiscreteBody& discrete, double band_limi
   return modes;
 }
 
+// The same triangles with elements of two orders more, a little beyond the band: their modes there
+// may be held otherwise.
+ErrorEstimate estimate_of_shells(const BodySpec& body, double band_limit_hz,
+                                 const ProgressHook& progress) {
+  constexpr double beyond = 1.05;
+  Stopwatch watch;
+  const DiscreteBody finer =
+      shell_body(body, body.unit_material(), shell_order + 2, body.fixations, progress);
+  ErrorEstimate estimate;
+  estimate.kappa_rad_per_m =
+      solve_modes(finer.matrices, beyond * band_limit_hz, progress).omega_rad_s;
+  estimate.seconds = watch.elapsed_s();
+  return estimate;
+}
+
 SolvedBody solve_once(const BodySpec& body, ErrorEstimation estimation,
                       const ProgressHook& progress) {
   const Material unit = body.unit_material();
@@ -102,12 +119,13 @@ SolvedBody solve_once(const BodySpec& body, ErrorEstimation estimation,
     solved.modes.report.bodies.front().order = cubic_order;
     solved.modes.report.dofs = enriched_dofs(only.mesh, only.dofs);
     solved.modes.estimate.not_estimated =
-        "there are no elements above order 3 (mesh: auto, or an accuracy, compares with a coarser "
-        "mesh)";
+        "there are no elements above order 3 (an accuracy compares with a coarser mesh)";
+  } else if (body.mesh.shell_width_m && estimation == ErrorEstimation::wanted) {
+    solved.modes.estimate = estimate_of_shells(body, limit_hz, progress);
   } else {
     solved.modes.estimate = estimate_if_wanted(estimation, body, unit, only, modes, progress);
   }
-  solved.displacement = with_constrained_rows(modes.shapes, only.dofs);
+  solved.displacement = only.displacement * modes.shapes;
   solved.mesh = std::move(only.mesh);
   return solved;
 }
@@ -118,6 +136,7 @@ std::string content_key(const Plate& plate) {
       "{} mesh(order {},{:a},{:a},{:a},{:a}) held", content_key(plate.shape), plate.mesh.order,
       plate.mesh.size.radius_edge_ratio, plate.mesh.size.max_tet_volume_m3.value_or(0.0),
       plate.mesh.size.flattening, plate.mesh.accuracy.value_or(0.0));
+  key += plate.mesh.shell_width_m ? fmt::format(" shells({:a})", *plate.mesh.shell_width_m) : "";
   key += plate.mesh.is_automatic ? " automatic" : "";
   for (const Fixation& fixation : plate.fixations) {
     key += " " + content_key(fixation);

@@ -11,8 +11,8 @@ namespace tapstudy::core {
 std::string content_key(const BodySpec& body);
 
 // The same body in the space of the next higher element order on the same tetrahedra (quadratic for
-// linear elements, cubic for quadratic ones): the drop of its frequencies estimates the
-// discretisation error, from below.
+// linear elements, cubic for quadratic ones; of shells two orders higher): the drop of its
+// frequencies estimates the discretisation error, from below.
 struct ErrorEstimate {
   Eigen::ArrayXd kappa_rad_per_m;  // of the modes and a few beyond the band, ascending
   std::string not_estimated;       // why kappa_rad_per_m is empty; empty: estimated

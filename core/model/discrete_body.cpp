@@ -7,14 +7,34 @@
 #include "core/model/element_order.hpp"
 #include "core/model/mesh/wanted_order.hpp"
 #include "core/model/progress.hpp"
+#include "core/model/shells/shell_body.hpp"
+#include "core/model/shells/shell_elements.hpp"
 namespace tapstudy::core {
+namespace {
+Eigen::SparseMatrix<double, Eigen::RowMajor> displacement_of(const FreeDofs& dofs) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < dofs.position.size(); ++i) {
+    if (dofs.position[i] >= 0) {
+      entries.emplace_back(static_cast<int>(i), dofs.position[i], 1.0);
+    }
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix(
+      static_cast<Eigen::Index>(dofs.position.size()), dofs.count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+}  // namespace
+
 DiscreteBody discretised(const Plate& plate, const Material& material, const MeshSize& size,
                          const std::vector<Fixation>& regions, const ProgressHook& progress) {
+  std::vector<Fixation> all_regions = plate.fixations;
+  all_regions.insert(all_regions.end(), regions.begin(), regions.end());
+  if (plate.mesh.shell_width_m) {
+    return shell_body(plate, material, shell_order, all_regions, progress);
+  }
   DiscreteBody body;
   Stopwatch watch;
   tell(progress, "meshing");
-  std::vector<Fixation> all_regions = plate.fixations;
-  all_regions.insert(all_regions.end(), regions.begin(), regions.end());
   body.mesh = mesh_shape(
       plate.shape, size, points_to_mesh(all_regions, plate.shape),
       plate.mesh.order == chosen_order ? WantedOrder::quadratic_if_small : WantedOrder::linear);
@@ -29,6 +49,9 @@ DiscreteBody discretised(const Plate& plate, const Material& material, const Mes
   body.dofs = free_dofs(constrained_dofs(body.mesh, plate.shape, plate.fixations));
   body.matrices = assemble(body.mesh, material, body.dofs,
                            spring_supports(body.mesh, plate.shape, plate.fixations));
+  body.displacement = displacement_of(body.dofs);
+  body.order = body.mesh.order();
+  body.elements = static_cast<int>(body.mesh.tets.rows());
   body.cost.assemble_s = watch.lap_s();
   return body;
 }
@@ -39,9 +62,9 @@ ModelReport report_on(const std::vector<DiscreteBody>& bodies, const Modes& mode
     report.cost.mesh_s += body.cost.mesh_s;
     report.cost.assemble_s += body.cost.assemble_s;
     report.nodes += static_cast<int>(body.mesh.nodes_m.rows());
-    report.tets += static_cast<int>(body.mesh.tets.rows());
-    report.dofs += body.dofs.count;
-    report.bodies.push_back({body.mesh.order(), body.mesh.radius_edge_ratio});
+    report.tets += body.elements;
+    report.dofs += static_cast<int>(body.matrices.K.rows());
+    report.bodies.push_back({body.order, body.mesh.radius_edge_ratio});
   }
   report.cost.factor_s = modes.factor_s;
   report.cost.iterate_s = modes.iterate_s;
@@ -49,16 +72,5 @@ ModelReport report_on(const std::vector<DiscreteBody>& bodies, const Modes& mode
   report.counted_in_band = modes.counted_in_band;
   report.worst_residual = modes.worst_residual;
   return report;
-}
-
-Eigen::MatrixXd with_constrained_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs) {
-  Eigen::MatrixXd rows =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(dofs.position.size()), free_rows.cols());
-  for (std::size_t i = 0; i < dofs.position.size(); ++i) {
-    if (dofs.position[i] >= 0) {
-      rows.row(static_cast<Eigen::Index>(i)) = free_rows.row(dofs.position[i]);
-    }
-  }
-  return rows;
 }
 }  // namespace tapstudy::core

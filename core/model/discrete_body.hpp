@@ -9,11 +9,17 @@
 #include "core/model/plate.hpp"
 #include "core/model/progress.hpp"
 namespace tapstudy::core {
-// A body as finite elements: mesh, constraints and matrices (paper section 4.2.1).
+// A body as finite elements: mesh, constraints and matrices (paper section 4.2.1). Of shells the
+// mesh is that on which others see their shapes.
 struct DiscreteBody {
   TetMesh mesh;
-  FreeDofs dofs;
+  FreeDofs dofs;  // of the mesh's nodes
   StiffnessAndMass matrices;
+  // Of the nodes (x0 y0 z0 x1 …), by the unknowns of the matrices: the free degrees of freedom, or
+  // those of shells.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> displacement;
+  int order{};     // of the elements
+  int elements{};  // their number
   ModelCost cost;  // of meshing and assembling
 };
 
@@ -24,7 +30,4 @@ DiscreteBody discretised(const Plate& plate, const Material& material, const Mes
 
 // The cost and outcome of solving these bodies, at least one, as one system.
 ModelReport report_on(const std::vector<DiscreteBody>& bodies, const Modes& modes);
-
-// The displacements with the rows of constrained degrees of freedom, which are 0.
-Eigen::MatrixXd with_constrained_rows(const Eigen::MatrixXd& free_rows, const FreeDofs& dofs);
 }  // namespace tapstudy::core

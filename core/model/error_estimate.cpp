@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/model/joints/joints.hpp"
 #include "core/model/modes/discretisation_error.hpp"
+#include "core/model/shells/shell_elements.hpp"
 namespace tapstudy::core {
 namespace {
 std::string too_large(int dofs, Eigen::Index vectors) {
@@ -110,6 +111,9 @@ ErrorEstimate estimate_error(const BodySpec& plate, const CoupledBodies& system,
                              const ProgressHook& progress) {
   int dofs = 0;
   for (const DiscreteBody& body : system.bodies) {
+    if (body.order == shell_order) {
+      return {{}, "bodies in contact have shell elements, whose shell_width_m may be halved", 0.0};
+    }
     dofs += enriched_dofs(body.mesh, body.dofs);
   }
   const auto build = [&] {

@@ -44,7 +44,7 @@ struct RefinementRound {
 
 // As what a body was meshed.
 struct MeshedBody {
-  int order{};  // of its elements
+  int order{};  // of its elements; of shells shell_order
   RadiusEdgeRatio radius_edge_ratio{};
 };
 
@@ -52,7 +52,7 @@ struct MeshedBody {
 struct ModelReport {
   std::vector<MeshedBody> bodies;  // the one that is tapped, then those it touches; of a beam none
   int nodes{};
-  int tets{};
+  int tets{};  // or shell elements
   int dofs{};  // free degrees of freedom
   int rigid_body_modes{};
   int counted_in_band{};

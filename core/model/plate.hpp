@@ -11,10 +11,13 @@ namespace tapstudy::core {
 struct Meshing {
   MeshSize size;
   int order{1};  // of the elements: 1 (T4), 2 (T10), or chosen_order (element_order.hpp)
+  // Of a plate: shell elements this wide (shells/shell_body.hpp) in place of tetrahedra, for which
+  // the settings above are. Unset: tetrahedra.
+  std::optional<double> shell_width_m{};
   // Refine until no frequency in the band changes by more than this fraction; unset: no refinement.
   std::optional<double> accuracy{};
-  // Order, size and flattening are chosen for the accuracy (refinement/refinement.hpp); what is
-  // stated here of them is not used.
+  // Order, size and flattening, or shells, are chosen for the accuracy (refinement/refinement.hpp);
+  // what is stated here of them is not used.
   bool is_automatic{false};
 };
 

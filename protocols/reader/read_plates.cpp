@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/model/cubic_elements.hpp"
+#include "core/model/shells/shell_elements.hpp"
 #include "protocols/axes/axis.hpp"
 #include "protocols/reader/read_sections.hpp"
 #include "protocols/surface/check_surface.hpp"
@@ -136,6 +137,20 @@ void read_mesh(MapReader& mesh, core::Meshing& meshing) {
                                  "beyond {} of order 3 alone",
                                  core::max_flattening)},
       {1.0, core::max_cubic_flattening}, 1.0);
+  if (mesh.has("shell_width_m")) {
+    meshing.shell_width_m = mesh.number(
+        {"shell_width_m",
+         fmt::format("size_m only, at least {} times wider than thick: shell elements this wide, "
+                     "without any other setting; unset: tetrahedra",
+                     core::least_width_to_thickness)},
+        Range::positive(10.0));
+    for (const char* const other :
+         {"order", "max_tet_volume_m3", "radius_edge_ratio", "flattening", "accuracy"}) {
+      if (mesh.has(other)) {
+        mesh.reject(other, "is of tetrahedra, and shell_width_m takes shell elements");
+      }
+    }
+  }
   if (meshing.order != core::cubic_order && meshing.size.flattening > core::max_flattening) {
     mesh.reject("flattening", fmt::format("beyond {} is of order 3 alone: elements of lower order "
                                           "bend too stiffly",

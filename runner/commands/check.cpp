@@ -75,8 +75,7 @@ std::string cost_of(const core::ModelReport& report, bool is_solved_now, bool is
 
 std::string kind_of_model(const core::ModelReport& report, bool is_beam) {
   return is_beam ? "a beam, in closed form"
-                 : fmt::format("{} {} tetrahedra, {} dof", report.tets,
-                               name_of_order(report.order()), report.dofs);
+                 : fmt::format("{}, {} dof", describe_elements(report), report.dofs);
 }
 
 void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
@@ -100,10 +99,10 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
     if (!is_beam) {
       const core::FrequencyErrors errors =
           core::frequency_errors(*body, plate_spec(protocol, own).material, protocol.band_limit_hz);
-      fmt::print("    {}\n", describe_errors(errors, report.order()));
+      fmt::print("    {}\n", describe_errors(errors));
       fmt::print("{}", describe_spending(protocol, own, models));
       warnings += note_of_relaxation(own, report) + warning_of_order(own, report) +
-                  warning_of_errors(stimulus.name, errors, report.order());
+                  warning_of_errors(stimulus.name, errors);
     }
   }
   fmt::print("{}", warnings);

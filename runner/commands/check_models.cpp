@@ -13,6 +13,7 @@
 #include "core/model/element_order.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/progress.hpp"
+#include "core/model/shells/shell_elements.hpp"
 #include "core/techniques/compensated.hpp"
 #include "core/techniques/technique.hpp"
 #include "runner/session/stimuli/stimulus_family.hpp"
@@ -289,11 +290,17 @@ std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
   return lines;
 }
 
-std::string name_of_order(int order) {
-  return order == core::cubic_order ? "cubic" : order == 2 ? "quadratic" : "linear";
+std::string describe_elements(const core::ModelReport& report) {
+  if (report.order() == core::shell_order) {
+    return counted(static_cast<std::size_t>(report.tets), "shell element");
+  }
+  const char* const order = report.order() == core::cubic_order ? "cubic"
+                            : report.order() == 2               ? "quadratic"
+                                                                : "linear";
+  return fmt::format("{} {} tetrahedra", report.tets, order);
 }
 
-std::string describe_errors(const core::FrequencyErrors& errors, int order) {
+std::string describe_errors(const core::FrequencyErrors& errors) {
   if (!errors.not_estimated.empty()) {
     return fmt::format("error of the frequencies not estimated: {}", errors.not_estimated);
   }
@@ -302,22 +309,21 @@ std::string describe_errors(const core::FrequencyErrors& errors, int order) {
           ? fmt::format(", and at least {} in the band",
                         counted(static_cast<std::size_t>(errors.modes_at_least), "mode"))
           : "";
-  return fmt::format("estimated error: frequencies are too high by up to {}, by {}{}",
-                     core::describe_error(errors.largest()),
-                     order == core::cubic_order ? "how they moved from a coarser mesh"
-                                                : "elements of the next order",
-                     missing);
+  return fmt::format(
+      "estimated error: frequencies are too high by up to {}, by elements of the next "
+      "order{}",
+      core::describe_error(errors.largest()), missing);
 }
 
-std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors,
-                              int order) {
+std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors) {
   const bool is_missing = errors.modes_at_least > errors.relative.size();
   if (errors.not_estimated.empty() && errors.largest() <= tolerated_error && !is_missing) {
     return {};
   }
   return fmt::format(
       "  warning: {}: {} (mesh: order 2, of thin walls 3, a smaller max_tet_volume_m3 or less "
-      "flattening; accuracy: 0.02 refines until they hold still)\n",
-      stimulus, describe_errors(errors, order));
+      "flattening, of shell elements a smaller shell_width_m; accuracy: 0.02 refines until they "
+      "hold still)\n",
+      stimulus, describe_errors(errors));
 }
 }  // namespace tapstudy::runner

@@ -38,11 +38,10 @@ std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
 // and why.
 std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
                                const core::ModelReport& report);
-// "linear", "quadratic" or "cubic".
-std::string name_of_order(int order);
-// One line about the discretisation error of a model's frequencies, of elements of this order.
-std::string describe_errors(const core::FrequencyErrors& errors, int order);
+// "445 linear tetrahedra"; "8 shell elements".
+std::string describe_elements(const core::ModelReport& report);
+// One line about the discretisation error of a model's frequencies.
+std::string describe_errors(const core::FrequencyErrors& errors);
 // Beyond 5 %, or where modes are missing, or nothing is known: a warning with its cure; else empty.
-std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors,
-                              int order);
+std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors);
 }  // namespace tapstudy::runner

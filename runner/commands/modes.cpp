@@ -117,7 +117,7 @@ void print_json(const protocols::Protocol& protocol, const protocols::PresentedS
 
 void print_refinement(const core::ModelReport& report) {
   for (const core::RefinementRound& round : report.refinement) {
-    fmt::print("  {:>7} tetrahedra: {} modes", round.tets, round.modes);
+    fmt::print("  {:>7} elements: {} modes", round.tets, round.modes);
     fmt::print("{}\n", std::isfinite(round.moved)
                            ? fmt::format(", moved {:.2g} % at most", 100.0 * round.moved)
                            : std::string{});
@@ -129,12 +129,12 @@ void print_refinement(const core::ModelReport& report) {
 
 void print_solution(const std::string& name, const core::ModelReport& report) {
   fmt::print(
-      "{}: {} nodes, {} {} tetrahedra, {} free degrees of freedom\n"
+      "{}: {} nodes, {}, {} free degrees of freedom\n"
       "  {:.3f} s (mesh {:.3f}, assemble {:.3f}, factor {:.3f}, iterate {:.3f}), {:.0f} MB at "
       "most\n\n",
-      name, report.nodes, report.tets, name_of_order(report.order()), report.dofs,
-      report.cost.total_s(), report.cost.mesh_s, report.cost.assemble_s, report.cost.factor_s,
-      report.cost.iterate_s, 1e-6 * peak_memory_bytes());
+      name, report.nodes, describe_elements(report), report.dofs, report.cost.total_s(),
+      report.cost.mesh_s, report.cost.assemble_s, report.cost.factor_s, report.cost.iterate_s,
+      1e-6 * peak_memory_bytes());
 }
 
 void print_completeness(const core::ModelReport& report, double band_limit_hz) {
@@ -182,9 +182,9 @@ void print_table(const protocols::PresentedStimulus& stimulus, const core::Plate
   print_modes(plate, errors, stimulus.contacts != nullptr);
   if (!is_beam) {
     print_completeness(report, spec.band_limit_hz);
-    fmt::print("  {}\n", describe_errors(errors, report.order()));
+    fmt::print("  {}\n", describe_errors(errors));
     fmt::print("{}{}{}", note_of_relaxation(stimulus, report), warning_of_order(stimulus, report),
-               warning_of_errors(stimulus.name, errors, report.order()));
+               warning_of_errors(stimulus.name, errors));
   }
 }
 

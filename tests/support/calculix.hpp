@@ -126,9 +126,9 @@ inline void run_calculix(const std::string& input, const TempDirectory& director
 }
 
 // The column "FREQUENCY (CYCLES/TIME)" of the .dat file.
-inline std::vector<double> calculix_hz(const CalculixInput& input, int modes) {
+inline std::vector<double> calculix_hz(const std::string& input, int modes) {
   const TempDirectory directory;
-  run_calculix(input.with_step(fmt::format("*FREQUENCY\n{}", modes)), directory);
+  run_calculix(input, directory);
   std::ifstream results{directory / "body.dat"};
   std::vector<double> hz;
   for (std::string line; std::getline(results, line) && static_cast<int>(hz.size()) < modes;) {
@@ -142,5 +142,8 @@ inline std::vector<double> calculix_hz(const CalculixInput& input, int modes) {
     }
   }
   return hz;
+}
+inline std::vector<double> calculix_hz(const CalculixInput& input, int modes) {
+  return calculix_hz(input.with_step(fmt::format("*FREQUENCY\n{}", modes)), modes);
 }
 }  // namespace tapstudy::testing

@@ -169,9 +169,10 @@ class Elongations {
     const DiscreteBody& body = system_.bodies.at(end.body);
     const RigidMotions motions{body.mesh};
     for (const NodeWeight& one : weights_of(named)) {
-      const int dof = body.dofs.position[static_cast<std::size_t>(3 * one.node + axis)];
-      if (dof >= 0) {
-        elongation.weights.emplace_back(system_.first_dof[end.body] + dof, sign * one.weight);
+      for (decltype(body.displacement)::InnerIterator share{body.displacement, 3 * one.node + axis};
+           share; ++share) {
+        elongation.weights.emplace_back(system_.first_dof[end.body] + static_cast<int>(share.col()),
+                                        sign * one.weight * share.value());
       }
       elongation.motions.segment<6>(6 * static_cast<Eigen::Index>(end.body)) +=
           sign * one.weight *
@@ -210,7 +211,7 @@ void place_after_one_another(CoupledBodies& system) {
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
       system.matrices.first_of_node.push_back(first + nodes[i]);
     }
-    system.first_dof.push_back(first + body.dofs.count);
+    system.first_dof.push_back(first + static_cast<int>(body.matrices.K.rows()));
   }
   system.matrices.first_of_node.push_back(system.first_dof.back());
 }
@@ -288,7 +289,7 @@ void set_energy_shares(const CoupledBodies& system, std::size_t springs, const M
     const auto body = static_cast<std::size_t>(i);
     const StiffnessAndMass& matrices = system.bodies[body].matrices;
     const Eigen::MatrixXd shapes =
-        modes.shapes.middleRows(system.first_dof[body], system.bodies[body].dofs.count);
+        modes.shapes.middleRows(system.first_dof[body], matrices.K.rows());
     found.kinetic_share.row(i) = shapes.cwiseProduct(matrices.mass() * shapes).colwise().sum();
     found.strain_share.row(i) =
         shapes.cwiseProduct(matrices.stiffness() * shapes).colwise().sum().array() /
@@ -316,7 +317,7 @@ SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progres
   solved.modes.report = report_on(system.bodies, modes);
   solved.modes.estimate = estimate_if_wanted(estimation, body, system, modes, progress);
   DiscreteBody& tapped = system.bodies.front();
-  solved.displacement = with_constrained_rows(modes.shapes.topRows(tapped.dofs.count), tapped.dofs);
+  solved.displacement = tapped.displacement * modes.shapes.topRows(tapped.matrices.K.rows());
   solved.mesh = std::move(tapped.mesh);
   return solved;
 }

@@ -135,8 +135,8 @@ void check_count(const Shape& shape, const MeshSize& size) {
     const double enough =
         size.flattening * std::cbrt(from_shape / 1e4) * std::cbrt(from_shape / 1e4);
     advice = fmt::format(
-        "it is too thin for well-shaped tetrahedra; mesh: auto takes flat ones of order 3, as do "
-        "order: 3 and flattening: {:.0f}",
+        "it is too thin for well-shaped tetrahedra; mesh: auto takes shell elements, as does "
+        "shell_width_m; order: 3 and flattening: {:.0f} takes flat tetrahedra",
         std::min(std::ceil(enough), max_cubic_flattening));
   }
   throw ModelError{fmt::format(

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "core/model/cubic_elements.hpp"
 #include "core/model/element_order.hpp"
 #include "core/model/refinement/refinement.hpp"
 #include "core/model/refinement/rounds.hpp"
+#include "core/model/shells/shell_elements.hpp"
 namespace tapstudy::core {
 namespace {
 // Of a regular tetrahedron.
@@ -17,13 +17,16 @@ double edge_m(double volume_m3) {
   return std::cbrt(6.0 * std::numbers::sqrt2 * volume_m3);
 }
 
-// In a plate as thick as the edge, once it is flattened, one layer of elements.
+// In a plate as thick as the edge, once it is flattened, one layer of elements; or shells.
 Meshing meshing_with(double edge_m, int order, const Shape& shape) {
   Meshing mesh;
+  if (order == shell_order) {
+    mesh.shell_width_m = edge_m;
+    return mesh;
+  }
   mesh.order = order;
-  const double flattest = order == cubic_order ? max_cubic_flattening : max_chosen_flattening;
   if (const auto* const box = std::get_if<Box>(&shape)) {
-    mesh.size.flattening = std::clamp(edge_m / box->size_m.z(), 1.0, flattest);
+    mesh.size.flattening = std::clamp(edge_m / box->size_m.z(), 1.0, max_chosen_flattening);
   }
   const double regular_m3 = edge_m * edge_m * edge_m / (6.0 * std::numbers::sqrt2);
   mesh.size.max_tet_volume_m3 = regular_m3 / mesh.size.flattening;
@@ -31,6 +34,10 @@ Meshing meshing_with(double edge_m, int order, const Shape& shape) {
 }
 
 double first_edge_m(const Shape& shape) {
+  if (is_sheet(shape)) {
+    const Vec3& size_m = std::get<Box>(shape).size_m;
+    return 0.5 * std::min(size_m.x(), size_m.y());
+  }
   const double volume_m3 = std::abs(core::volume_m3(shape));
   const double usual_m = edge_m(volume_m3 / tets_of_first_round);
   const auto* const box = std::get_if<Box>(&shape);
@@ -39,13 +46,6 @@ double first_edge_m(const Shape& shape) {
   }
   // Six elements a square of one layer.
   return std::sqrt(6.0 * volume_m3 / (box->size_m.z() * tets_of_first_round));
-}
-
-// Of a plate so thin that quadratic elements would bend only where four times those of the first
-// round are taken.
-bool is_sheet(const Shape& shape) {
-  const auto* const box = std::get_if<Box>(&shape);
-  return box != nullptr && first_edge_m(shape) > 2.0 * max_chosen_flattening * box->size_m.z();
 }
 
 // The next order's modes that this one has above the band count by how far they have to fall.
@@ -74,24 +74,6 @@ double shortening(double bound, double accuracy) {
   return std::clamp(std::pow(accuracy / bound, 1.0 / usual_power), 0.5, 0.7);
 }
 
-// Small steps, of which the last one tells what is left.
-constexpr double shortened_cubic = 0.7;
-
-// Of cubic elements, which have none above them: the frequencies to which those of two meshes tend
-// (Richardson 1911). Errors of flat ones fall with the square of the edges, at clamped rims with a
-// power of 1.5. Modes that were above the band have moved from its limit at least.
-ErrorEstimate extrapolated(const BodyModes& before, const BodyModes& after, double shortened) {
-  const double left = std::pow(shortened, 1.5);
-  ErrorEstimate estimate{after.kappa_rad_per_m, {}, 0.0};
-  for (Eigen::Index i = 0; i < after.kappa_rad_per_m.size(); ++i) {
-    const double from =
-        i < before.kappa_rad_per_m.size() ? before.kappa_rad_per_m[i] : after.band_limit_rad_per_m;
-    estimate.kappa_rad_per_m[i] -=
-        left / (1.0 - left) * std::max(0.0, from - after.kappa_rad_per_m[i]);
-  }
-  return estimate;
-}
-
 class ChosenMesh {
  public:
   ChosenMesh(const BodySpec& body, const SolveMeshed& solve)
@@ -100,12 +82,11 @@ class ChosenMesh {
         accuracy_{body.mesh.accuracy.value_or(usual_accuracy)},
         edge_m_{first_edge_m(body.shape)} {
     check_can_settle(body.fixations, "mesh: auto");
-    check_is_feasible();
   }
 
   SolvedBody solved() {
-    const int order = is_sheet(body_.shape) ? cubic_order : chosen_order;
-    if (order == cubic_order || !is_enough(solve_with(1))) {
+    const int order = is_sheet(body_.shape) ? shell_order : chosen_order;
+    if (order == shell_order || !is_enough(solve_with(1))) {
       try {
         while (!is_enough(solve_with(order)) && shorten()) {
         }
@@ -133,10 +114,6 @@ class ChosenMesh {
                       : HUGE_VAL;
     rounds_.push_back(
         {next.modes.report.tets, static_cast<int>(next.modes.kappa_rad_per_m.size()), moved});
-    if (is_same_order && order == cubic_order) {
-      next.modes.estimate = extrapolated(last_.modes, next.modes, edge_m_ / last_edge_m_);
-    }
-    last_edge_m_ = edge_m_;
     const auto held_m2 = held_areas_m2(next.mesh, body_.shape, body_.fixations);
     has_settled_ = is_all_sides(body_.fixations) ||
                    (moved <= accuracy_ && nonconverged_region(held_m2_, held_m2).empty());
@@ -155,43 +132,21 @@ class ChosenMesh {
   }
 
   // What elements of the next order find is half of the error at least (error_estimate.hpp).
-  double bound() const { return is_cubic() ? error_ : 2.0 * error_; }
-  bool is_cubic() const { return body_.mesh.order == cubic_order; }
+  double bound() const { return 2.0 * error_; }
 
   // False if that would take too many unknowns, or too long.
   bool shorten() {
     constexpr double least = 0.9;  // less is not worth a round
-    const bool is_layer = body_.mesh.size.flattening > 1.0;
+    const bool is_layer = body_.mesh.size.flattening > 1.0 || body_.mesh.shell_width_m;
     const double power = is_layer ? 2.0 : 3.0;  // by which the elements grow in number
     const double room = static_cast<double>(max_automatic_dofs) / last_.modes.report.dofs;
-    const double wanted = is_cubic()             ? shortened_cubic
-                          : bound() <= accuracy_ ? 0.6
-                                                 : shortening(bound(), accuracy_);
+    const double wanted = bound() <= accuracy_ ? 0.6 : shortening(bound(), accuracy_);
     const double share = std::max(wanted, std::pow(room, -1.0 / power));
     edge_m_ *= share;
     return share < least && rounds_.size() < max_rounds;
   }
 
-  // Of a sheet: with the flattest elements that are chosen.
-  void check_is_feasible() const {
-    constexpr double dofs_a_tet = 10.0;  // cubic, in one layer
-    if (!is_sheet(body_.shape)) {
-      return;
-    }
-    const Vec3& size_m = std::get<Box>(body_.shape).size_m;
-    const double edge = max_cubic_flattening * size_m.z();
-    const double dofs = dofs_a_tet * 6.0 * size_m.x() * size_m.y() / (edge * edge);
-    if (dofs > max_automatic_dofs) {
-      throw ModelError{fmt::format(
-          "mesh: auto: a sheet of {:.3g} x {:.3g} x {:.3g} m would take about {:.2g} unknowns (at "
-          "most {}) with elements {} times wider than thick: it is too thin for solid elements "
-          "(from {:.2g} m on it is not)",
-          size_m.x(), size_m.y(), size_m.z(), dofs, max_automatic_dofs, max_cubic_flattening,
-          size_m.z() * std::sqrt(dofs / max_automatic_dofs))};
-    }
-  }
-
-  // What is far off is refused: as a rule a sheet, whose flat elements bend too stiffly.
+  // What is far off is refused.
   void check_is_fair() const {
     constexpr double fair = 0.1;
     if (error_ <= fair) {
@@ -210,7 +165,6 @@ class ChosenMesh {
   const SolveMeshed& solve_;
   double accuracy_;
   double edge_m_;
-  double last_edge_m_{};
   double error_{HUGE_VAL};
   bool has_settled_{false};
   std::vector<double> held_m2_;

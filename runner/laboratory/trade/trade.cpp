@@ -195,6 +195,7 @@ core::Meshing mesh_of(const core::PlateSpec& plate, int order, double tets) {
   mesh.order = order;
   mesh.accuracy.reset();
   mesh.is_automatic = false;
+  mesh.shell_width_m.reset();
   mesh.size.max_tet_volume_m3 = std::abs(core::volume_m3(plate.shape)) / tets;
   return mesh;
 }

@@ -9,6 +9,7 @@
 
 #include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/quantiles.hpp"
+#include "core/model/shells/shell_elements.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr double half = 0.5;
@@ -111,8 +112,8 @@ ReportTable models_table(const RenderedStudy& study) {
       const RenderedModel& model = *stimulus.model;
       row.insert(row.end(), {count(static_cast<std::int64_t>(model.frequencies_hz.size())),
                              word(first_modes(model)), count(model.tets), count(model.nodes),
-                             count(model.order), number(model.worst_residual, 2),
-                             number(model.estimated_error)});
+                             model.order == core::shell_order ? word("shell") : count(model.order),
+                             number(model.worst_residual, 2), number(model.estimated_error)});
     } else {
       for (std::size_t i = row.size(); i < table.columns.size(); ++i) {
         row.push_back(nothing(table.columns[i]));

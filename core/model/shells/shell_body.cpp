@@ -106,7 +106,7 @@ SparseMatrix displacements(const Supported& supported, Eigen::Index places) {
       }
     }
   }
-  return from_entries(entries, 3 * layers * places, supported.count());
+  return from_entries(entries, 3 * node_at(places, 0), supported.count());
 }
 
 // Adds a triangle's matrices to the lower triangles of those of what is left.

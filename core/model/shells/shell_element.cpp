@@ -80,7 +80,7 @@ struct Functions {
 // Lagrange's on the lattice: products of one polynomial in each coordinate (Silvester 1969).
 Functions functions_at(const Eigen::Vector3d& l, const Lattice& lattice) {
   const int order = lattice.order;
-  const Eigen::Index count = lattice.column_of(0, order) + 1;
+  const Eigen::Index count = lattice.places_of_triangle();
   Functions functions{Eigen::VectorXd(count),
                       {Eigen::VectorXd(count), Eigen::VectorXd(count), Eigen::VectorXd(count)}};
   for (int j = 0; j <= order; ++j) {
@@ -109,7 +109,7 @@ ShellElements::ShellElements(const Material& material, double thickness_m, int o
 ShellElements::Integrals ShellElements::integrals_of(int order) {
   const Quadrature quadrature = gauss_quadrature(order + 1);
   const Lattice lattice{order, {}, {}};
-  const Eigen::Index count = lattice.column_of(0, order) + 1;
+  const Eigen::Index count = lattice.places_of_triangle();
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(count, count);
   Integrals integrals{zero, {zero, zero, zero}, {}};
   integrals.slopes.fill({zero, zero, zero});
@@ -131,93 +131,88 @@ ShellElements::Integrals ShellElements::integrals_of(int order) {
   return integrals;
 }
 
-namespace {
-constexpr Eigen::Index z = 2;
-
 // Along which axis an unknown moves, and whether in proportion to the height over the middle.
-struct Motion {
+struct ShellElements::Motion {
   Eigen::Index axis{};
   bool is_bending{};
-};
-constexpr std::array<Motion, shell_unknowns> motions{
-    {{0, false}, {1, false}, {2, false}, {0, true}, {1, true}}};
-
-// Of a triangle, integrated over its area: N_a N_b, N_a,i N_b and N_a,i N_b,j.
-struct InPlane {
-  Eigen::MatrixXd values;
-  std::array<Eigen::MatrixXd, 2> slopes_by_values;
-  std::array<std::array<Eigen::MatrixXd, 2>, 2> slopes;
 };
 
 // The integrals through the thickness t: of 1 by 1, 1 by the slope 2 / t of the height over half of
 // t, and of this height and its slope by themselves.
-Eigen::MatrixXd stiffness_of(const Motion& a, const Motion& b, const Elasticity& elasticity_pa,
-                             double thickness_m, const InPlane& integrals) {
+Eigen::MatrixXd ShellElements::stiffness_of(const Motion& a, const Motion& b,
+                                            const InPlane& integrals) const {
+  constexpr Eigen::Index z = 2;
   const auto modulus_pa = [&](Eigen::Index i, Eigen::Index j) {
-    return elasticity_pa(pair_of(a.axis, i), pair_of(b.axis, j));
+    return elasticity_pa_(pair_of(a.axis, i), pair_of(b.axis, j));
   };
   Eigen::MatrixXd block = Eigen::MatrixXd::Zero(integrals.values.rows(), integrals.values.cols());
   for (std::size_t i = 0; i < 2; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    if (a.is_bending != b.is_bending) {
-      const Eigen::MatrixXd& slopes = integrals.slopes_by_values.at(i);
-      block += a.is_bending ? Eigen::MatrixXd{2.0 * modulus_pa(z, row) * slopes.transpose()}
-                            : Eigen::MatrixXd{2.0 * modulus_pa(row, z) * slopes};
-      continue;
-    }
-    for (std::size_t j = 0; j < 2; ++j) {
-      block += (a.is_bending ? thickness_m / 3.0 : thickness_m) *
-               modulus_pa(row, static_cast<Eigen::Index>(j)) * integrals.slopes.at(i).at(j);
+    if (a.is_bending && !b.is_bending) {
+      block += 2.0 * modulus_pa(z, row) * integrals.slopes_by_values.at(i).transpose();
+    } else if (b.is_bending && !a.is_bending) {
+      block += 2.0 * modulus_pa(row, z) * integrals.slopes_by_values.at(i);
+    } else {
+      const double height_m = a.is_bending ? thickness_m_ / 3.0 : thickness_m_;
+      block += height_m * (modulus_pa(row, 0) * integrals.slopes.at(i).at(0) +
+                           modulus_pa(row, 1) * integrals.slopes.at(i).at(1));
     }
   }
   if (a.is_bending && b.is_bending) {
-    block += 4.0 / thickness_m * modulus_pa(z, z) * integrals.values;
+    block += 4.0 / thickness_m_ * modulus_pa(z, z) * integrals.values;
   }
   return block;
 }
-}  // namespace
 
-ShellElements::Matrices ShellElements::of(const Eigen::Matrix<double, 3, 2>& corners_m) const {
+ShellElements::InPlane ShellElements::in_plane(const Corners& corners_m) const {
   const Eigen::RowVector2d to_second = corners_m.row(1) - corners_m.row(0);
   const Eigen::RowVector2d to_third = corners_m.row(2) - corners_m.row(0);
   const double twice_m2 = to_second[0] * to_third[1] - to_second[1] * to_third[0];
-  Eigen::Matrix<double, 3, 2> gradients;  // of the barycentric coordinates
-  gradients << to_second[1] - to_third[1], to_third[0] - to_second[0], to_third[1], -to_third[0],
+  Corners gradients;  // of the barycentric coordinates
+  gradients << to_second[1] - to_third[1], to_third[0] - to_second[0],  //
+      to_third[1], -to_third[0],                                        //
       -to_second[1], to_second[0];
   gradients /= twice_m2;
   const double area_m2 = 0.5 * twice_m2;
-  const Eigen::Index count = integrals_.values.rows();
-  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(count, count);
+  const Eigen::MatrixXd zero =
+      Eigen::MatrixXd::Zero(integrals_.values.rows(), integrals_.values.cols());
   InPlane integrals{area_m2 * integrals_.values, {zero, zero}, {}};
   integrals.slopes.fill({zero, zero});
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      const double slope =
-          area_m2 * gradients(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(axis));
+      const double slope = area_m2 * gradients(static_cast<Eigen::Index>(i),  //
+                                               static_cast<Eigen::Index>(axis));
       integrals.slopes_by_values.at(axis) += slope * integrals_.slopes_by_values.at(i);
       for (std::size_t j = 0; j < 3; ++j) {
-        for (std::size_t other = 0; other < 2; ++other) {
-          integrals.slopes.at(axis).at(other) +=
-              slope * gradients(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(other)) *
-              integrals_.slopes.at(i).at(j);
-        }
+        const auto row = static_cast<Eigen::Index>(j);
+        integrals.slopes.at(axis).at(0) +=
+            slope * gradients(row, 0) * integrals_.slopes.at(i).at(j);
+        integrals.slopes.at(axis).at(1) +=
+            slope * gradients(row, 1) * integrals_.slopes.at(i).at(j);
       }
     }
   }
-  Matrices element{Eigen::MatrixXd(shell_unknowns * count, shell_unknowns * count),
-                   Eigen::MatrixXd::Zero(shell_unknowns * count, shell_unknowns * count)};
-  const auto of_unknown = [&](int unknown) {
-    return Eigen::seqN(unknown, count, Eigen::fix<shell_unknowns>);
+  return integrals;
+}
+
+ShellElements::Matrices ShellElements::of(const Corners& corners_m) const {
+  constexpr std::array<Motion, shell_unknowns> motions{
+      {{0, false}, {1, false}, {2, false}, {0, true}, {1, true}}};
+  const InPlane integrals = in_plane(corners_m);
+  const Eigen::Index count = integrals.values.rows();
+  const Eigen::MatrixXd zero =
+      Eigen::MatrixXd::Zero(shell_unknowns * count, shell_unknowns * count);
+  Matrices element{zero, zero};
+  const auto all_of = [count](std::size_t unknown) {
+    return Eigen::seqN(static_cast<Eigen::Index>(unknown), count, Eigen::fix<shell_unknowns>);
   };
-  for (int a = 0; a < shell_unknowns; ++a) {
-    for (int b = 0; b < shell_unknowns; ++b) {
-      element.stiffness(of_unknown(a), of_unknown(b)) = stiffness_of(
-          motions.at(static_cast<std::size_t>(a)), motions.at(static_cast<std::size_t>(b)),
-          elasticity_pa_, thickness_m_, integrals);
+  for (std::size_t a = 0; a < motions.size(); ++a) {
+    for (std::size_t b = 0; b < motions.size(); ++b) {
+      element.stiffness(all_of(a), all_of(b)) =
+          stiffness_of(motions.at(a), motions.at(b), integrals);
     }
-    const double share = motions.at(static_cast<std::size_t>(a)).is_bending ? 1.0 / 3.0 : 1.0;
-    element.mass(of_unknown(a), of_unknown(a)) =
-        share * density_kg_per_m3_ * thickness_m_ * integrals.values;
+    const double height_m = motions.at(a).is_bending ? thickness_m_ / 3.0 : thickness_m_;
+    element.mass(all_of(a), all_of(a)) = density_kg_per_m3_ * height_m * integrals.values;
   }
   return element;
 }

@@ -25,7 +25,8 @@ class ShellElements {
     Eigen::MatrixXd stiffness;  // N/m
     Eigen::MatrixXd mass;       // kg
   };
-  Matrices of(const Eigen::Matrix<double, 3, 2>& corners_m) const;
+  using Corners = Eigen::Matrix<double, 3, 2>;
+  Matrices of(const Corners& corners_m) const;
 
  private:
   // Of the functions N of a triangle of area 1 and their derivatives by its barycentric
@@ -36,6 +37,15 @@ class ShellElements {
     std::array<std::array<Eigen::MatrixXd, 3>, 3> slopes;
   };
   static Integrals integrals_of(int order);
+  // Of one triangle, its derivatives along x and y.
+  struct InPlane {
+    Eigen::MatrixXd values;
+    std::array<Eigen::MatrixXd, 2> slopes_by_values;
+    std::array<std::array<Eigen::MatrixXd, 2>, 2> slopes;
+  };
+  InPlane in_plane(const Corners& corners_m) const;
+  struct Motion;
+  Eigen::MatrixXd stiffness_of(const Motion& a, const Motion& b, const InPlane& integrals) const;
 
   Eigen::Matrix<double, 9, 9> elasticity_pa_;  // C_ijkl, row 3 i + j, column 3 k + l
   double density_kg_per_m3_;

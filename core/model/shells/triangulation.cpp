@@ -94,7 +94,7 @@ class Numbering {
 Lattice lattice_on(const Triangulation& triangulation, int order) {
   Numbering numbering{triangulation, order};
   Lattice lattice{order, {}, {}};
-  lattice.triangles.resize(triangulation.triangles.rows(), (order + 1) * (order + 2) / 2);
+  lattice.triangles.resize(triangulation.triangles.rows(), lattice.places_of_triangle());
   for (Eigen::Index triangle = 0; triangle < lattice.triangles.rows(); ++triangle) {
     for (int j = 0; j <= order; ++j) {
       for (int i = 0; i <= order - j; ++i) {

@@ -23,7 +23,10 @@ struct Lattice {
   int order{};  // even
   Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> places_m;
   TetMesh::Indices triangles;
-  Eigen::Index column_of(int i, int j) const { return j * (order + 1) - j * (j - 1) / 2 + i; }
+  Eigen::Index column_of(Eigen::Index i, Eigen::Index j) const {
+    return j * (order + 1) - j * (j - 1) / 2 + i;
+  }
+  Eigen::Index places_of_triangle() const { return column_of(0, order) + 1; }
 };
 Lattice lattice_on(const Triangulation& triangulation, int order);
 

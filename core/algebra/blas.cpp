@@ -27,6 +27,16 @@ Eigen::MatrixXd inner_products(const Tall& a, const Tall& b) {
   return products;
 }
 
+Eigen::MatrixXd gram(const Tall& a) {
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(a.cols(), a.cols());
+  if (products.size() > 0) {
+    cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, blas_int(a.cols()), blas_int(a.rows()), 1.0,
+                a.data(), blas_int(a.outerStride()), 0.0, products.data(),
+                blas_int(products.rows()));
+  }
+  return products.selfadjointView<Eigen::Lower>();
+}
+
 void subtract_combination(const Tall& a, const Eigen::MatrixXd& weights, Eigen::MatrixXd& to) {
   if (weights.size() > 0) {
     add_product(-1.0, a, weights, to);

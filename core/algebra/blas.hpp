@@ -7,6 +7,8 @@ using Tall = Eigen::Ref<const Eigen::MatrixXd>;
 
 // A' B
 Eigen::MatrixXd inner_products(const Tall& a, const Tall& b);
+// A' A
+Eigen::MatrixXd gram(const Tall& a);
 // to -= A weights
 void subtract_combination(const Tall& a, const Eigen::MatrixXd& weights, Eigen::MatrixXd& to);
 // A weights

@@ -155,13 +155,13 @@ namespace {
 // Corrected seminormal equations (Björck 1987), with Cholesky's factors of A'A for those of A: as
 // exact as orthogonal factors while the columns are far from dependent, and several times quicker.
 std::optional<Eigen::VectorXd> by_normal_equations(const Eigen::MatrixXd& A,
+                                                   const Eigen::MatrixXd& gram_of_a,
                                                    const Eigen::VectorXd& b) {
   constexpr double dependent = 1e-8;  // what is left of a column of unit length, squared
-  Eigen::MatrixXd gram = inner_products(A, A);
-  const Eigen::VectorXd per_size = gram.diagonal().cwiseSqrt().cwiseInverse();
-  gram = per_size.asDiagonal() * gram * per_size.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> factors{gram};
-  if (!gram.allFinite() || factors.info() != Eigen::Success ||
+  const Eigen::VectorXd per_size = gram_of_a.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = per_size.asDiagonal() * gram_of_a * per_size.asDiagonal();
+  const Eigen::LDLT<Eigen::MatrixXd> factors{scaled};
+  if (!scaled.allFinite() || factors.info() != Eigen::Success ||
       !(factors.vectorD().minCoeff() > dependent)) {
     return std::nullopt;
   }
@@ -171,12 +171,8 @@ std::optional<Eigen::VectorXd> by_normal_equations(const Eigen::MatrixXd& A,
   const Eigen::VectorXd solution = solved(b);
   return solution + solved(b - A * solution);
 }
-}  // namespace
 
-LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b) {
-  if (const std::optional<Eigen::VectorXd> solution = by_normal_equations(A, b)) {
-    return {*solution, static_cast<int>(A.cols())};
-  }
+LeastSquares by_orthogonal_factors(Eigen::MatrixXd A, Eigen::VectorXd b) {
   const lapack_int rows = as_lapack_int(A.rows());
   const lapack_int columns = as_lapack_int(A.cols());
   std::vector<lapack_int> pivots(static_cast<std::size_t>(columns), 0);
@@ -186,5 +182,22 @@ LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b) {
                        pivots.data(), least_share, &rank),
         "the least-squares fit", "dgelsy");
   return {b.head(columns), static_cast<int>(rank)};
+}
+}  // namespace
+
+LeastSquares least_squares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& gram,
+                           const Eigen::VectorXd& b) {
+  if (const std::optional<Eigen::VectorXd> solution = by_normal_equations(A, gram, b)) {
+    return {*solution, static_cast<int>(A.cols())};
+  }
+  const Eigen::VectorXd size = A.colwise().norm().cwiseMax(1e-300).transpose();
+  const LeastSquares found = by_orthogonal_factors(A * size.cwiseInverse().asDiagonal(), b);
+  return {found.solution.cwiseQuotient(size), found.rank};
+}
+
+LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b) {
+  const std::optional<Eigen::VectorXd> solution = by_normal_equations(A, gram(A), b);
+  return solution ? LeastSquares{*solution, static_cast<int>(A.cols())}
+                  : by_orthogonal_factors(std::move(A), std::move(b));
 }
 }  // namespace tapstudy::core

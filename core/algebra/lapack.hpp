@@ -34,4 +34,7 @@ struct LeastSquares {
 // A: m × n, m >= n, columns of similar norm, otherwise rank detection fails.
 // Throws ModelError if an entry is not a number.
 LeastSquares least_squares(Eigen::MatrixXd A, Eigen::VectorXd b);
+// Where gram, A' A, is known; columns of any norm.
+LeastSquares least_squares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& gram,
+                           const Eigen::VectorXd& b);
 }  // namespace tapstudy::core

@@ -107,13 +107,45 @@ EnergyOutside energy_outside(const std::vector<FreeDecay>& decays, const Band& b
   return result;
 }
 
-std::vector<Band> parts_of(const Band& band) {
+namespace {
+// Near a frequency the one around which the decays have least energy: a mode on the edge of two
+// parts would be found in either, or in both.
+double quiet_edge_hz(double near_hz, const std::vector<FreeDecay>& decays) {
+  constexpr double reach = 1.08;
+  constexpr double around = 1.02;
+  constexpr int candidates = 17;
+  std::vector<double> energies(candidates, 0.0);
+  const auto candidate_hz = [&](std::size_t i) {
+    return near_hz * std::pow(reach, 2.0 * static_cast<double>(i) / (candidates - 1) - 1.0);
+  };
+  const Band near{near_hz / (reach * around), near_hz * reach * around};
+  for (const FreeDecay& decay : decays) {
+    constexpr double enough_bins = 16.0;
+    if (decay.duration_s() * (near.high_hz - near.low_hz) < enough_bins) {
+      continue;
+    }
+    const BandSpectrum spectrum = band_spectrum(decay, near);
+    const Eigen::ArrayXd hz = decay.rate_hz / (2.0 * std::numbers::pi) * spectrum.rad_per_sample;
+    const Eigen::ArrayXd energy =
+        spectrum.values.cwiseAbs2().array() / std::max(decay.samples.squaredNorm(), 1e-290);
+    for (std::size_t i = 0; i < energies.size(); ++i) {
+      const double at_hz = candidate_hz(i);
+      energies[i] += (hz > at_hz / around && hz < at_hz * around).select(energy, 0.0).sum() / at_hz;
+    }
+  }
+  const auto least = std::ranges::min_element(energies);
+  return candidate_hz(static_cast<std::size_t>(least - energies.begin()));
+}
+}  // namespace
+
+std::vector<Band> parts_of(const Band& band, const std::vector<FreeDecay>& decays) {
+  constexpr double ratio = std::numbers::sqrt2;
   std::vector<Band> parts;
   double low_hz = band.low_hz;
-  for (double edge_hz = first_octave_hz; 1.25 * edge_hz < band.high_hz; edge_hz *= 2.0) {
+  for (double edge_hz = first_octave_hz; 1.25 * edge_hz < band.high_hz; edge_hz *= ratio) {
     if (edge_hz > 1.25 * low_hz) {
-      parts.push_back({low_hz, edge_hz});
-      low_hz = edge_hz;
+      parts.push_back({low_hz, quiet_edge_hz(edge_hz, decays)});
+      low_hz = parts.back().high_hz;
     }
   }
   parts.push_back({low_hz, band.high_hz});

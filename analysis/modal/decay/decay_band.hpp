@@ -20,9 +20,10 @@ struct EnergyOutside {
 };
 EnergyOutside energy_outside(const std::vector<FreeDecay>& decays, const Band& band, double low_hz);
 
-// Parts of a wide band in which modes are sought one after another: up to 1000 Hz, then octaves. A
-// fit's cost grows with the cube of what is in it.
-std::vector<Band> parts_of(const Band& band);
+// Parts of a wide band in which modes are sought one after another: up to 1000 Hz, then half
+// octaves, each edge where the decays have least energy near there. A fit's cost grows with the
+// cube of what is in it. Rates of the decays are high enough for the band.
+std::vector<Band> parts_of(const Band& band, const std::vector<FreeDecay>& decays);
 // A decay until what it has in a part of the band has died away (no bin of 50 ms, or of longer
 // where the part is low or narrow, has thirty times the power of the last three of these), and
 // above 1000 Hz no longer than 1000 periods: what follows is noise, which costs time and hides

@@ -29,14 +29,18 @@ double seconds(const DecayModel& model) {
 }
 
 Normal normal_equations(const WeightedDecay& decay, Eigen::Index shared) {
-  Eigen::MatrixXd jacobian = decay.model.jacobian(decay.state);
-  const Eigen::Index own = jacobian.cols() - 2 * shared;
-  jacobian.leftCols(2 * shared) *= seconds(decay.model);
-  const Eigen::VectorXd size =
-      jacobian.rightCols(own).colwise().norm().cwiseMax(1e-300).transpose();
-  jacobian.rightCols(own) *= size.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd all = decay.weight * core::inner_products(jacobian, jacobian);
-  const Eigen::VectorXd slope = decay.weight * (jacobian.transpose() * decay.state.residual);
+  const DecayModel& model = decay.model;
+  const Eigen::MatrixXd slopes = model.pole_slopes(decay.state);
+  Eigen::MatrixXd all = model.information(decay.state, slopes);
+  const Eigen::Index own = all.cols() - 2 * shared;
+  const Eigen::VectorXd size = all.diagonal().tail(own).cwiseSqrt().cwiseMax(1e-300);
+  Eigen::VectorXd scale = Eigen::VectorXd::Constant(all.cols(), seconds(model));
+  scale.tail(own) = size.cwiseInverse();
+  all = decay.weight * (scale.asDiagonal() * all * scale.asDiagonal());
+  Eigen::VectorXd slope{all.cols()};
+  slope << slopes.transpose() * decay.state.residual,
+      decay.state.basis.transpose() * decay.state.residual;
+  slope = decay.weight * scale.cwiseProduct(slope);
   return {all.topLeftCorner(2 * shared, 2 * shared),
           all.topRightCorner(2 * shared, own),
           all.bottomRightCorner(own, own),
@@ -223,11 +227,11 @@ DecayFit described(const DecayModel& model, const DecayModel::State& state, bool
   DecayFit fit;
   set_residual(model, state, fit);
   fit.has_converged = has_converged;
-  const Eigen::MatrixXd jacobian = model.jacobian(state);
-  const Eigen::VectorXd scale = jacobian.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-  const Eigen::MatrixXd scaled = jacobian * scale.asDiagonal();
+  const Eigen::MatrixXd information = model.information(state, model.pole_slopes(state));
+  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
   const double variance = fit.sum_of_squares / fit.degrees_of_freedom;
-  const Eigen::MatrixXd inverse = core::pseudo_inverse(scaled.transpose() * scaled) * variance;
+  const Eigen::MatrixXd inverse =
+      core::pseudo_inverse(scale.asDiagonal() * information * scale.asDiagonal()) * variance;
   const Eigen::MatrixXd covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
   for (Eigen::Index k = 0; k < model.poles(); ++k) {
     fit.modes.push_back(mode_of(model, state, covariance, k));
@@ -252,9 +256,9 @@ WeightedDecay started(const SharingDecay& decay, const std::vector<Pole>& shared
 // decays.
 void set_significance(const DecayModel::State& state, double variance, std::size_t shared,
                       DecayFit& fit) {
-  const Eigen::VectorXd scale = state.basis.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-  const Eigen::MatrixXd scaled = state.basis * scale.asDiagonal();
-  const Eigen::MatrixXd inverse = core::pseudo_inverse(scaled.transpose() * scaled) * variance;
+  const Eigen::VectorXd scale = state.gram.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::MatrixXd inverse =
+      core::pseudo_inverse(scale.asDiagonal() * state.gram * scale.asDiagonal()) * variance;
   for (std::size_t k = 0; k < shared; ++k) {
     const auto row = 2 * static_cast<Eigen::Index>(k);
     const Eigen::Vector2d parts = state.shares.segment<2>(row).cwiseQuotient(scale.segment<2>(row));

@@ -1,14 +1,31 @@
 #include "analysis/modal/decay/decay_model.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "core/algebra/blas.hpp"
 #include "core/algebra/lapack.hpp"
 namespace tapstudy::analysis {
 namespace {
 using Complex = std::complex<double>;
+
+// Complex numbers, one a bin. Parts apart, because processors multiply several of them at a time
+// so.
+struct Parts {
+  Eigen::ArrayXd real;
+  Eigen::ArrayXd imag;
+  void set(Eigen::Index bin, const Complex& value) {
+    real[bin] = value.real();
+    imag[bin] = value.imag();
+  }
+};
+
+// a (b + add)
+Parts product(const Parts& a, const Parts& b, const Complex& add = {}) {
+  return {a.real * (b.real + add.real()) - a.imag * (b.imag + add.imag()),
+          a.real * (b.imag + add.imag()) + a.imag * (b.real + add.real())};
+}
 
 // Sums over n = 0 ... N - 1 of z^n q^n and, times n, of n z^n q^n, at every bin's q; q^N = 1 there.
 // Near z q = 1, where the quotient loses its digits, by the series.
@@ -16,44 +33,51 @@ class GeometricSums {
  public:
   GeometricSums(const Complex& log_z, const BandSpectrum& spectrum)
       : log_z_{log_z},
-        z_{std::exp(log_z)},
         length_{static_cast<double>(spectrum.length)},
         z_to_length_{std::exp(log_z * length_)},
-        spectrum_{spectrum} {}
-
-  Complex value(Eigen::Index bin) const {
-    const Complex u = exponent(bin);
-    return is_near_one(u) ? value_near_one(u) : quotient(1.0 - z_to_length_, 1.0 - turned(bin));
+        spectrum_{spectrum} {
+    const Complex z = std::exp(log_z);
+    const Parts delay{spectrum.delay.real(), spectrum.delay.imag()};
+    turned_ = {z.real() * delay.real - z.imag() * delay.imag,
+               z.real() * delay.imag + z.imag() * delay.real};
+    const Eigen::ArrayXd per_square =
+        ((1.0 - turned_.real).square() + turned_.imag.square()).inverse();
+    inverse_ = {(1.0 - turned_.real) * per_square, turned_.imag * per_square};
   }
-  // The derivative of the value by ln z.
-  Complex slope(Eigen::Index bin) const {
-    const Complex u = exponent(bin);
-    if (is_near_one(u)) {
-      return slope_near_one(u);
+
+  Parts values() const {
+    const Complex n = 1.0 - z_to_length_;
+    Parts all{n.real() * inverse_.real - n.imag() * inverse_.imag,
+              n.real() * inverse_.imag + n.imag() * inverse_.real};
+    for (const Eigen::Index bin : bins_near_one()) {
+      all.set(bin, value_near_one(exponent(bin)));
     }
-    const Complex x = turned(bin);
-    const Complex value = quotient(1.0 - z_to_length_, 1.0 - x);
-    return quotient(product(value, x) - length_ * z_to_length_, 1.0 - x);
+    return all;
+  }
+  // The derivatives of the values by ln z.
+  Parts slopes() const {
+    Parts all = product(inverse_, product(values(), turned_), -length_ * z_to_length_);
+    for (const Eigen::Index bin : bins_near_one()) {
+      all.set(bin, slope_near_one(exponent(bin)));
+    }
+    return all;
   }
 
  private:
-  // The library's product and quotient of complex numbers look for infinities: several times
-  // slower.
-  static Complex product(const Complex& a, const Complex& b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-  }
-  static Complex quotient(const Complex& a, const Complex& b) {
-    const double scale = 1.0 / (b.real() * b.real() + b.imag() * b.imag());
-    return {(a.real() * b.real() + a.imag() * b.imag()) * scale,
-            (a.imag() * b.real() - a.real() * b.imag()) * scale};
-  }
   Complex exponent(Eigen::Index bin) const {
     return {log_z_.real(), log_z_.imag() - spectrum_.rad_per_sample[bin]};
   }
-  Complex turned(Eigen::Index bin) const { return product(z_, spectrum_.delay[bin]); }
-  bool is_near_one(const Complex& u) const {
+  std::vector<Eigen::Index> bins_near_one() const {
     constexpr double near = 1e-3;
-    return (u.real() * u.real() + u.imag() * u.imag()) * length_ * length_ < near * near;
+    std::vector<Eigen::Index> bins;
+    if (std::abs(log_z_.real()) * length_ < near) {
+      for (Eigen::Index bin = 0; bin < spectrum_.rad_per_sample.size(); ++bin) {
+        if (std::norm(exponent(bin)) * length_ * length_ < near * near) {
+          bins.push_back(bin);
+        }
+      }
+    }
+    return bins;
   }
   Complex value_near_one(const Complex& u) const {
     const double first = length_ * (length_ - 1.0) / 2.0;
@@ -67,51 +91,87 @@ class GeometricSums {
   }
 
   Complex log_z_;
-  Complex z_;
   double length_;
   Complex z_to_length_;
   const BandSpectrum& spectrum_;
+  Parts turned_;   // z q
+  Parts inverse_;  // 1 / (1 - z q)
 };
+
+// Of an exponential and of its conjugate.
+struct BothSums {
+  Parts of_z;
+  Parts of_conjugate;
+};
+BothSums values_of(const Complex& log_z, const BandSpectrum& spectrum) {
+  return {GeometricSums{log_z, spectrum}.values(),
+          GeometricSums{std::conj(log_z), spectrum}.values()};
+}
+BothSums slopes_of(const Complex& log_z, const BandSpectrum& spectrum) {
+  return {GeometricSums{log_z, spectrum}.slopes(),
+          GeometricSums{std::conj(log_z), spectrum}.slopes()};
+}
+
+Parts half_sum(const BothSums& both) {
+  return {(both.of_z.real + both.of_conjugate.real) / 2.0,
+          (both.of_z.imag + both.of_conjugate.imag) / 2.0};
+}
+Parts half_difference(const BothSums& both) {
+  return {(both.of_z.real - both.of_conjugate.real) / 2.0,
+          (both.of_z.imag - both.of_conjugate.imag) / 2.0};
+}
+
+// c times the sum of z, its conjugate times that of the conjugate.
+BothSums times(const Complex& c, const BothSums& both) {
+  const auto scaled = [](const Complex& by, const Parts& parts) {
+    return Parts{by.real() * parts.real - by.imag() * parts.imag,
+                 by.real() * parts.imag + by.imag() * parts.real};
+  };
+  return {scaled(c, both.of_z), scaled(std::conj(c), both.of_conjugate)};
+}
+
+CutExponential as_complex(const BothSums& both) {
+  const auto joined = [](const Parts& parts) {
+    Eigen::VectorXcd all{parts.real.size()};
+    all.real() = parts.real.matrix();
+    all.imag() = parts.imag.matrix();
+    return all;
+  };
+  return {joined(half_sum(both)), joined(half_difference(both))};
+}
 }  // namespace
 
 CutExponential cut_exponential(const std::complex<double>& log_z, const BandSpectrum& spectrum) {
-  const GeometricSums of_z{log_z, spectrum};
-  const GeometricSums of_conjugate{std::conj(log_z), spectrum};
-  const Eigen::Index bins = spectrum.values.size();
-  CutExponential both{Eigen::VectorXcd(bins), Eigen::VectorXcd(bins)};
-  for (Eigen::Index k = 0; k < bins; ++k) {
-    const Complex one = of_z.value(k);
-    const Complex other = of_conjugate.value(k);
-    both.plus[k] = (one + other) / 2.0;
-    both.minus[k] = (one - other) / 2.0;
-  }
-  return both;
+  return as_complex(values_of(log_z, spectrum));
 }
 
 CutExponential cut_exponential_slope(const std::complex<double>& c,
                                      const std::complex<double>& log_z,
                                      const BandSpectrum& spectrum) {
-  const GeometricSums of_z{log_z, spectrum};
-  const GeometricSums of_conjugate{std::conj(log_z), spectrum};
-  const Eigen::Index bins = spectrum.values.size();
-  CutExponential both{Eigen::VectorXcd(bins), Eigen::VectorXcd(bins)};
-  for (Eigen::Index k = 0; k < bins; ++k) {
-    const Complex one = c * of_z.slope(k);
-    const Complex other = std::conj(c) * of_conjugate.slope(k);
-    both.plus[k] = (one + other) / 2.0;
-    both.minus[k] = (one - other) / 2.0;
-  }
-  return both;
+  return as_complex(times(c, slopes_of(log_z, spectrum)));
 }
 
 namespace {
 constexpr Eigen::Index smooth_terms = 4;
 constexpr double max_growth = 30.0;
 
+// scale times (half the sum) and times (j half the difference).
+void set_pair(const BothSums& both, double scale, Eigen::Index plus, Eigen::Index minus,
+              Eigen::MatrixXd& columns) {
+  const Parts sum = half_sum(both);
+  const Parts difference = half_difference(both);
+  const Eigen::Index bins = sum.real.size();
+  columns.col(plus).head(bins) = scale * sum.real;
+  columns.col(plus).tail(bins) = scale * sum.imag;
+  columns.col(minus).head(bins) = -scale * difference.imag;
+  columns.col(minus).tail(bins) = scale * difference.real;
+}
+
 // The columns of cosine and sine.
-void set_pair(Eigen::MatrixXd& columns, Eigen::Index first, const CutExponential& both) {
-  columns.col(first) = stacked(both.plus);
-  columns.col(first + 1) = stacked(Complex{0.0, -1.0} * both.minus);
+void set_oscillation(const Complex& log_z, const BandSpectrum& spectrum, Eigen::Index first,
+                     Eigen::MatrixXd& columns) {
+  set_pair(values_of(log_z, spectrum), 1.0, first, first + 1, columns);
+  columns.col(first + 1) *= -1.0;
 }
 
 // Squares of e^(2 max_growth) can still be added up.
@@ -140,52 +200,56 @@ DecayModel::DecayModel(const BandSpectrum& spectrum, Eigen::Index poles,
   }
   for (Eigen::Index k = 0; k < lines; ++k) {
     const Complex log_z = log_of({lines_hz[static_cast<std::size_t>(k)], 0.0}, spectrum.rate_hz);
-    set_pair(nuisance_, smooth_terms + 2 * k, cut_exponential(log_z, spectrum));
+    set_oscillation(log_z, spectrum, smooth_terms + 2 * k, nuisance_);
   }
 }
 
 DecayModel::State DecayModel::at(const Eigen::VectorXd& logs) const {
-  State state{logs, {}, Eigen::MatrixXd{data_.size(), 2 * poles_ + nuisance_.cols()}, {}, 0.0};
+  State state{logs, {}, Eigen::MatrixXd{data_.size(), 2 * poles_ + nuisance_.cols()}, {}, {}, 0.0};
   for (Eigen::Index k = 0; k < poles_; ++k) {
-    set_pair(state.basis, 2 * k, cut_exponential(log_of_pole(logs, k), spectrum_));
+    set_oscillation(log_of_pole(logs, k), spectrum_, 2 * k, state.basis);
   }
   state.basis.rightCols(nuisance_.cols()) = nuisance_;
   if (grows_beyond_bounds(logs) || !state.basis.allFinite()) {  // fits nothing
     state.shares = Eigen::VectorXd::Zero(state.basis.cols());
+    state.gram = Eigen::MatrixXd::Zero(state.basis.cols(), state.basis.cols());
     state.residual = data_;
     state.sum_of_squares = std::numeric_limits<double>::infinity();
     return state;
   }
-  const Eigen::RowVectorXd size = state.basis.colwise().norm().cwiseMax(1e-300);
-  state.shares = core::least_squares(state.basis * size.cwiseInverse().asDiagonal(), data_)
-                     .solution.cwiseQuotient(size.transpose());
+  state.gram = core::gram(state.basis);
+  state.shares = core::least_squares(state.basis, state.gram, data_).solution;
   state.residual = data_ - state.basis * state.shares;
   state.sum_of_squares = state.residual.squaredNorm();
   return state;
 }
 
-Eigen::MatrixXd DecayModel::jacobian(const State& state) const {
-  Eigen::MatrixXd result{data_.size(), unknowns()};
+Eigen::MatrixXd DecayModel::pole_slopes(const State& state) const {
+  Eigen::MatrixXd result{data_.size(), 2 * poles_};
   for (Eigen::Index k = 0; k < poles_; ++k) {
     const Complex share{state.shares[2 * k], -state.shares[2 * k + 1]};
-    const CutExponential slopes =
-        cut_exponential_slope(share, log_of_pole(state.logs, k), spectrum_);
-    result.col(2 * k) = stacked(slopes.plus) / length_;
-    result.col(2 * k + 1) = stacked(Complex{0.0, 1.0} * slopes.minus) / length_;
+    const BothSums slopes = times(share, slopes_of(log_of_pole(state.logs, k), spectrum_));
+    set_pair(slopes, 1.0 / length_, 2 * k, 2 * k + 1, result);
   }
-  result.rightCols(2 * poles_ + nuisance_.cols()) = state.basis;
   return result;
 }
 
+Eigen::MatrixXd DecayModel::information(const State& state,
+                                        const Eigen::MatrixXd& pole_slopes) const {
+  const Eigen::Index shares = state.basis.cols();
+  Eigen::MatrixXd all{unknowns(), unknowns()};
+  all.topLeftCorner(2 * poles_, 2 * poles_) = core::gram(pole_slopes);
+  all.topRightCorner(2 * poles_, shares) = core::inner_products(pole_slopes, state.basis);
+  all.bottomLeftCorner(shares, 2 * poles_) = all.topRightCorner(2 * poles_, shares).transpose();
+  all.bottomRightCorner(shares, shares) = state.gram;
+  return all;
+}
+
 Eigen::MatrixXd DecayModel::column_slopes(const State& state, Eigen::Index pole) const {
-  const std::array<Complex, 2> shares{Complex{1.0, 0.0}, Complex{0.0, -1.0}};  // of cosine and sine
+  const BothSums slopes = slopes_of(log_of_pole(state.logs, pole), spectrum_);
   Eigen::MatrixXd result{data_.size(), 4};
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    const CutExponential slopes = cut_exponential_slope(shares.at(static_cast<std::size_t>(i)),
-                                                        log_of_pole(state.logs, pole), spectrum_);
-    result.col(i) = stacked(slopes.plus) / length_;
-    result.col(2 + i) = stacked(Complex{0.0, 1.0} * slopes.minus) / length_;
-  }
+  set_pair(slopes, 1.0 / length_, 0, 2, result);                             // of cosine
+  set_pair(times(Complex{0.0, -1.0}, slopes), 1.0 / length_, 1, 3, result);  // of sine
   return result;
 }
 

@@ -33,12 +33,15 @@ class DecayModel {
     Eigen::VectorXd logs;    // 2 a pole
     Eigen::VectorXd shares;  // 2 a pole and the nuisance terms: least squares for these poles
     Eigen::MatrixXd basis;
+    Eigen::MatrixXd gram;  // basis' basis
     Eigen::VectorXd residual;
     double sum_of_squares{};  // infinite for poles that grow beyond all bounds
   };
   State at(const Eigen::VectorXd& logs) const;
-  // d model / d unknowns: poles, then shares
-  Eigen::MatrixXd jacobian(const State& state) const;
+  // d model / d unknowns: of the poles; of the shares it is the basis.
+  Eigen::MatrixXd pole_slopes(const State& state) const;
+  // J' J of the derivatives by all unknowns: poles, then shares.
+  Eigen::MatrixXd information(const State& state, const Eigen::MatrixXd& pole_slopes) const;
   // The derivatives of one pole's two columns of the basis, by Re of its log, then by Im: four.
   Eigen::MatrixXd column_slopes(const State& state, Eigen::Index pole) const;
 

@@ -240,7 +240,10 @@ std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<doubl
 
 namespace {
 Band somewhat_wider(const Band& band, double rate_hz) {
-  return {0.8 * band.low_hz, std::min(1.25 * band.high_hz, 0.47 * rate_hz)};
+  constexpr double of_width = 0.4;
+  const double margin_hz = of_width * (band.high_hz - band.low_hz);
+  return {std::max(0.8 * band.low_hz, band.low_hz - margin_hz),
+          std::min({1.25 * band.high_hz, band.high_hz + margin_hz, 0.47 * rate_hz})};
 }
 
 void judge(const std::vector<Candidate>& candidates, const Band& band, double duration_s,

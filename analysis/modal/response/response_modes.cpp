@@ -12,10 +12,11 @@ namespace tapstudy::analysis {
 namespace {
 using Complex = std::complex<double>;
 constexpr Eigen::Index most_roots = 100;
+constexpr Eigen::Index most_roots_near = 40;  // one mode
 
-int highest_order(const FrequencyResponses& responses, Eigen::Index inputs) {
+int highest_order(const FrequencyResponses& responses, Eigen::Index inputs, Eigen::Index roots) {
   const Eigen::Index by_lines = responses.frequency_hz.size() / 4;
-  return static_cast<int>(std::max<Eigen::Index>(2, std::min(most_roots / inputs, by_lines)));
+  return static_cast<int>(std::max<Eigen::Index>(2, std::min(roots / inputs, by_lines)));
 }
 
 // Of chi-squared with two degrees of freedom a response: what the search over frequencies finds in
@@ -131,9 +132,9 @@ ResidueFit selected(const FrequencyResponses& responses, Candidates& candidates)
 
 // The settled poles of a band.
 std::vector<SettledPole> poles_in(const FrequencyResponses& inside, const ResponseGrid& grid,
-                                  std::vector<StabilisationOrder>& diagram) {
+                                  Eigen::Index roots, std::vector<StabilisationOrder>& diagram) {
   const NormalEquations equations{inside, grid,
-                                  highest_order(inside, std::ssize(grid.columns.front()))};
+                                  highest_order(inside, std::ssize(grid.columns.front()), roots)};
   const Eigen::ArrayXd& hz = inside.frequency_hz;
   diagram = stabilisation_diagram(equations, {hz[0], hz[hz.size() - 1]});
   return settled_poles(diagram);
@@ -165,7 +166,8 @@ std::optional<Candidates> with_close_modes(const FrequencyResponses& responses,
     return std::abs(frequency_hz - pole.frequency_hz) < near_hz;
   };
   std::vector<StabilisationOrder> diagram;
-  std::vector<SettledPole> settled = poles_in(within(responses, around), grid, diagram);
+  std::vector<SettledPole> settled =
+      poles_in(within(responses, around), grid, most_roots_near, diagram);
   std::erase_if(settled, [&](const SettledPole& one) { return !is_near(one.pole.frequency_hz); });
   const auto known_near = std::ranges::count_if(
       known.poles, [&](const Complex& s) { return is_near(natural(s).frequency_hz); });
@@ -304,7 +306,7 @@ ResponseModes find_response_modes(const FrequencyResponses& responses,
         "not every place was measured with every reference: each response counts as one of its own "
         "in the search for poles and in the shapes");
   }
-  Candidates candidates = candidates_of(poles_in(found.measured, grid, found.diagram));
+  Candidates candidates = candidates_of(poles_in(found.measured, grid, most_roots, found.diagram));
   ResidueFit fit = selected(found.measured, candidates);
   look_for_close_modes(found.measured, grid, candidates, fit);
   found.fitted = fit.fitted;

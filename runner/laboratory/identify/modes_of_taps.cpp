@@ -168,7 +168,7 @@ analysis::ModesOfTaps found_in_parts(const analysis::Band& band, std::vector<Ide
                                      TapRemarks& remarks) {
   std::vector<std::vector<analysis::TapModes>> pieces(taps.size());
   analysis::ModesOfTaps found;
-  for (const analysis::Band& of_part : analysis::parts_of(band)) {
+  for (const analysis::Band& of_part : analysis::parts_of(band, decays_of(taps))) {
     PartOfBand part = identified_in(of_part, taps, remarks);
     if (part.taps.empty()) {
       continue;

@@ -347,6 +347,14 @@ void widen(double by, Estimate& estimate) {
   estimate.bootstrap.reset();
 }
 
+double strongest_agreed(const std::vector<RepeatedMode>& modes) {
+  double strongest = 0.0;
+  for (const RepeatedMode& mode : modes) {
+    strongest = std::max(strongest, mode.standing == Standing::agreed ? mode.amplitude : 0.0);
+  }
+  return strongest;
+}
+
 // Where only the blow with its reflections shows a mode, they shift its pole by up to a third of
 // its decay rate.
 RepeatedMode seen_in_blow(RepeatedMode mode) {
@@ -362,10 +370,8 @@ std::vector<RepeatedMode> died_before(double after_s, const std::vector<Repeated
                                       const std::vector<RepeatedMode>& later) {
   constexpr double least_fall = 0.4;         // nepers
   constexpr double above_reflections = 0.1;  // reflections of the blow make weaker ones
-  double strongest = 0.0;
-  for (const RepeatedMode& mode : first) {
-    strongest = std::max(strongest, mode.standing == Standing::agreed ? mode.amplitude : 0.0);
-  }
+  // The strongest mode may be doubtful in the beginning, which its reflections disturb.
+  const double strongest = std::max(strongest_agreed(first), strongest_agreed(later));
   std::vector<RepeatedMode> died;
   std::ranges::copy_if(first, std::back_inserter(died), [&](const RepeatedMode& mode) {
     return mode.standing == Standing::agreed && mode.amplitude >= above_reflections * strongest &&

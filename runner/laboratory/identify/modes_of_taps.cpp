@@ -259,13 +259,15 @@ FoundInTaps looked_at(const analysis::Band& band, std::vector<IdentifiedTap> tap
   return of;
 }
 
+// What had died away by then, but for what of a mode's beginning is no exponential.
 std::vector<analysis::RepeatedMode> died_before(double after_s, const analysis::Band& band,
                                                 const FoundInTaps& first,
                                                 const analysis::ModesOfTaps& later) {
-  return analysis::died_before(
-      after_s,
-      analysis::distinct_modes(decays_of(first.taps), impacts_of(first.taps), band, first.found),
-      later.modes);
+  const std::vector<analysis::FreeDecay> decays = decays_of(first.taps);
+  std::vector<analysis::RepeatedMode> modes =
+      analysis::distinct_modes(decays, impacts_of(first.taps), band, first.found);
+  analysis::join_resonances(decays, modes);
+  return analysis::died_before(after_s, modes, later.modes);
 }
 
 // The free part of the taps; what had died away before that.

@@ -682,6 +682,7 @@ TEST_CASE("what only the blow shows is a mode if reflections cannot be it, known
   std::vector<RepeatedMode> later{first[0], remainder};
   const std::vector<RepeatedMode> died = died_before(0.012, first, later);
   REQUIRE(died.size() == 1);
+  CHECK(died_before(0.012, {first[2]}, later).empty());  // the strongest is seen later on alone
   CHECK(died[0].frequency_hz.value == first[1].frequency_hz.value);
   CHECK(died[0].frequency_hz.interval.high >= 900.0 + 900.0 * 0.02 / 3.0);
   CHECK(died[0].damping_ratio.interval.low <= 0.02 * 2.0 / 3.0);

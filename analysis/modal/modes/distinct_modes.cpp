@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -390,7 +391,12 @@ void add_died(const std::vector<RepeatedMode>& died, std::vector<RepeatedMode>& 
            std::ranges::any_of(died,
                                [&](const RepeatedMode& mode) { return are_near(mode, left); });
   });
-  later.insert(later.end(), died.begin(), died.end());
+  const auto rings_on = [&, known = later](const RepeatedMode& mode) {
+    return std::ranges::any_of(known, [&](const RepeatedMode& other) {
+      return other.standing == Standing::agreed && are_near(mode, other);
+    });
+  };
+  std::ranges::remove_copy_if(died, std::back_inserter(later), rings_on);
   std::ranges::sort(later, {}, [](const RepeatedMode& mode) { return centre_of(mode); });
 }
 

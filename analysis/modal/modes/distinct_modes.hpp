@@ -25,7 +25,8 @@ inline constexpr double blow_s = 0.012;
 // half-power bandwidth and its own. Their intervals are wider by what reflections may do.
 std::vector<RepeatedMode> died_before(double after_s, const std::vector<RepeatedMode>& first,
                                       const std::vector<RepeatedMode>& later);
-// Beside the later ones, instead of what doubtful remainders of them are left there. Ascending.
+// Beside the later ones, instead of what doubtful remainders of them are left there, unless one is
+// agreed there by now. Ascending.
 void add_died(const std::vector<RepeatedMode>& died, std::vector<RepeatedMode>& later);
 FreeDecay begun_later(const FreeDecay& decay, double after_s);
 }  // namespace tapstudy::analysis

@@ -689,6 +689,8 @@ TEST_CASE("what only the blow shows is a mode if reflections cannot be it, known
   add_died(died, later);
   REQUIRE(later.size() == 2);
   CHECK(later[1].standing == Standing::agreed);
+  add_died(died, later);  // it is there
+  CHECK(later.size() == 2);
 }
 
 TEST_CASE("what is over in three periods and within a blow is as likely the blow's pulse",

@@ -70,6 +70,18 @@ struct JournalContent {
 };
 JournalContent read_journal(const std::string& directory);
 
+// Whose a journal is and how much it holds, also where its chain is broken.
+struct JournalSummary {
+  bool has_lines{false};             // whole ones: a half line was never confirmed
+  std::size_t answers{0};            // to trials
+  std::string protocol_sha256;       // empty: it does not begin with a study
+  std::vector<SessionRow> sessions;  // their ids, participants, seeds and starts
+};
+JournalSummary summary_of_journal(const std::string& directory);
+// Ends a sentence about a database that is lost or damaged: how to read the answers in the journal
+// beside it. Empty where that one holds nothing.
+std::string where_answers_are(const std::string& database_file);
+
 // One text per entry, equal if and only if the entries are, kind by kind.
 std::vector<std::string> to_lines(const JournalEntries& entries);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -320,6 +321,56 @@ JournalContent read_journal(const std::string& directory) {
     throw StoreError{file + ": names no study"};
   }
   return content;
+}
+
+namespace {
+void add_to_summary(const std::string& line, JournalSummary& summary) {
+  constexpr std::string_view hash_key = "\"protocol_sha256\":\"";
+  const auto hash_at = line.find(hash_key);
+  if (!summary.has_lines && hash_at != std::string::npos) {  // not parsed: it has all surfaces
+    const std::size_t begin = hash_at + hash_key.size();
+    summary.protocol_sha256 = line.substr(begin, line.find('"', begin) - begin);
+  }
+  summary.has_lines = true;
+  summary.answers += line.starts_with(R"({"kind":"answer")") ? 1U : 0U;
+  if (!line.starts_with(R"({"kind":"session")")) {
+    return;
+  }
+  try {
+    const Json json = Json::parse(line);
+    SessionRow session;
+    session.id = json.at("session_id");
+    session.participant_id = json.at("participant_id");
+    session.seed = json.at("seed");
+    session.started_utc = json.at("started_utc");
+    summary.sessions.push_back(std::move(session));
+  } catch (const Json::exception&) {  // NOLINT(bugprone-empty-catch): whoever reads it all says so
+  }
+}
+}  // namespace
+
+JournalSummary summary_of_journal(const std::string& directory) {
+  std::ifstream stream{journal_file(directory)};
+  JournalSummary summary;
+  for (std::string line; std::getline(stream, line) && !stream.eof();) {
+    add_to_summary(line, summary);
+  }
+  return summary;
+}
+
+std::string where_answers_are(const std::string& database_file) {
+  const std::string directory = std::filesystem::path{database_file}.parent_path().string();
+  const JournalSummary journal = summary_of_journal(directory);
+  std::error_code error;
+  const bool is_in_the_way = std::filesystem::exists(database_file, error);
+  return journal.has_lines
+             ? fmt::format(
+                   "; {} holds what was answered ({} answers to trials): {} `tapstudy report {}` "
+                   "reads it (a new study needs another --out)",
+                   journal_file(directory), journal.answers,
+                   is_in_the_way ? "move study.db to another folder, and" : "put study.db back, or",
+                   directory)
+             : "";
 }
 
 namespace {

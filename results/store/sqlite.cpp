@@ -7,6 +7,7 @@
 #include <new>
 #include <utility>
 
+#include "results/journal/journal.hpp"
 #include "results/store_error.hpp"
 namespace tapstudy::results {
 namespace {
@@ -42,7 +43,10 @@ const char* hint_for(int code) {
 
 StoreError failure(const std::string& file, sqlite3* handle, int code) {
   const char* words = handle != nullptr ? sqlite3_errmsg(handle) : sqlite3_errstr(code);
-  return StoreError{fmt::format("{}: {}{}", file, words, hint_for(code))};
+  constexpr int primary = 0xff;
+  const bool is_damaged = (code & primary) == SQLITE_CORRUPT || (code & primary) == SQLITE_NOTADB;
+  return StoreError{fmt::format("{}: {}{}{}", file, words, hint_for(code),
+                                is_damaged ? where_answers_are(file) : "")};
 }
 
 // Absolute, because SQLite may be built to take "file:…" for a URI.

@@ -65,16 +65,26 @@ void use_write_ahead_log(Database& database) {
   }
 }
 
+StoreError missing_database(const std::string& directory) {
+  const std::string file = database_file(directory);
+  return StoreError{file + ": is missing" + where_answers_are(file)};
+}
+StoreError emptied_database(const std::string& directory) {
+  const std::string file = database_file(directory);
+  return StoreError{file + ": holds nothing any more" + where_answers_are(file)};
+}
 }  // namespace
 
 Store Store::open_or_create(const std::string& directory, const StudyRow& study,
                             const AcceptText& accept) {
   make_directory(directory);
-  if (!has_database(directory) && has_journal(directory)) {
-    throw StoreError{fmt::format(
-        "{}: is missing, though {} holds answers (`tapstudy report` reads them; put study.db back, "
-        "or choose another --out)",
-        database_file(directory), journal_file(directory))};
+  // looked at before the database is: whoever begins both begins with that one
+  const JournalSummary journal = summary_of_journal(directory);
+  if (!has_database(directory) && journal.has_lines) {
+    throw missing_database(directory);
+  }
+  if (journal.has_lines && !is_begun(directory)) {
+    throw emptied_database(directory);
   }
   Store store{Database{database_file(directory), Database::Access::write}, Journal{directory}};
   if (!store.is_empty()) {
@@ -82,6 +92,7 @@ Store Store::open_or_create(const std::string& directory, const StudyRow& study,
   }
   use_write_ahead_log(store.database_);
   store.create_or_check(study, accept);
+  store.check_is_of_journal(journal);
   // a program killed between the two leaves the journal an answer behind
   store.journal_->complete([&] { return store.study(); }, store.sessions(),
                            store.entries_for_journal());
@@ -89,11 +100,17 @@ Store Store::open_or_create(const std::string& directory, const StudyRow& study,
 }
 
 Store Store::open_existing(const std::string& directory) {
+  if (!has_database(directory) && has_journal(directory)) {
+    throw missing_database(directory);
+  }
   if (!has_database(directory)) {
     throw core::InvalidInput{fmt::format("{}: there is no study here (no study.db)", directory)};
   }
   roll_back_unfinished(directory);
   Store store{Database{database_file(directory), Database::Access::read}, std::nullopt};
+  if (store.is_empty() && has_journal(directory)) {
+    throw emptied_database(directory);
+  }
   if (store.is_empty()) {
     throw StoreError{fmt::format(
         "{}: is the unfinished beginning of a study, and holds nothing (its program was ended "
@@ -112,7 +129,15 @@ bool Store::has_database(const std::string& directory) {
   return exists(database_file(directory));
 }
 bool Store::has_journal(const std::string& directory) {
-  return exists(journal_file(directory));
+  return summary_of_journal(directory).has_lines;
+}
+bool Store::is_begun(const std::string& directory) {
+  if (!has_database(directory)) {
+    return false;
+  }
+  roll_back_unfinished(directory);
+  return !Store{Database{database_file(directory), Database::Access::read}, std::nullopt}
+              .is_empty();
 }
 
 Store Store::from_journal(const std::string& directory) {
@@ -207,6 +232,33 @@ void Store::create_or_check(const StudyRow& study, const AcceptText& accept) {
   all.commit();
 }
 
+// Sessions are stored before they are journalled: a database that lacks one is another's, or an
+// earlier copy, and what it added would stand among answers that it does not know.
+void Store::check_is_of_journal(const JournalSummary& journal) {
+  if (!journal.has_lines) {
+    return;
+  }
+  const auto refuse = [&](const std::string& what) {
+    throw StoreError{
+        fmt::format("{}: is of another study than {} beside it: it holds {} (put its own "
+                    "study.db back, or choose another --out)",
+                    journal_file(directory()), database_.file(), what)};
+  };
+  if (!journal.protocol_sha256.empty() &&
+      journal.protocol_sha256 != study_without_surfaces().protocol_sha256) {
+    refuse("what was answered under another protocol");
+  }
+  const std::vector<SessionRow> stored = sessions();
+  for (const SessionRow& session : journal.sessions) {
+    const auto same = std::ranges::find(stored, session.id, &SessionRow::id);
+    if (same == stored.end() || same->seed != session.seed ||
+        same->started_utc != session.started_utc) {
+      refuse(fmt::format("session {} of participant '{}', which this one lacks", session.id,
+                         session.participant_id));
+    }
+  }
+}
+
 // Of the latest session; unset: there is none yet.
 std::optional<std::string> Store::latest_protocol_text() {
   Statement row{database_,
@@ -261,7 +313,8 @@ StudyRow Store::study_without_surfaces() {
   Statement row{database_,
                 "SELECT title, protocol_file, protocol_text, protocol_sha256 FROM study"};
   if (!row.step()) {
-    throw StoreError{database_.file() + ": the study's own row is missing"};
+    throw StoreError{database_.file() + ": the study's own row is missing" +
+                     where_answers_are(database_.file())};
   }
   return {row.text(0), row.text(1), row.text(2), row.text(3), {}};
 }
@@ -305,10 +358,8 @@ void Store::check_is_sound() {
   database_.lift_limit();  // the rest takes as long as the file is large
   Statement check{database_, "PRAGMA quick_check(1)"};
   if (!check.step() || check.text(0) != "ok") {
-    throw StoreError{
-        fmt::format("{}: is damaged: {} (keep a copy; the answers are in "
-                    "answers.journal beside it, too)",
-                    database_.file(), check.text(0))};
+    throw StoreError{fmt::format("{}: is damaged: {}{}", database_.file(), check.text(0),
+                                 where_answers_are(database_.file()))};
   }
 }
 
@@ -330,18 +381,21 @@ void Store::check_schema() {
   const std::set<std::string> found = objects_of(database_);
   for (const std::string& object : found) {
     if (!known.contains(object)) {
-      throw StoreError{fmt::format("{}: contains a schema object that is not tapstudy's: {}",
-                                   database_.file(), core::cut_to(object, 80))};
+      throw StoreError{fmt::format("{}: contains a schema object that is not tapstudy's: {}{}",
+                                   database_.file(), core::cut_to(object, 80),
+                                   where_answers_are(database_.file()))};
     }
   }
   if (found.size() != known.size()) {
-    throw StoreError{database_.file() + ": lacks some of tapstudy's tables"};
+    throw StoreError{database_.file() + ": lacks some of tapstudy's tables" +
+                     where_answers_are(database_.file())};
   }
 }
 
 void Store::check_version() {
   if (database_.pragma("application_id") != application_id) {
-    throw StoreError{database_.file() + ": is not a tapstudy database"};
+    throw StoreError{database_.file() + ": is not a tapstudy database" +
+                     where_answers_are(database_.file())};
   }
   const std::int64_t version = database_.pragma("user_version");
   if (!is_known_schema(version)) {

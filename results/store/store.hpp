@@ -39,7 +39,9 @@ class Store {
   // ticks and trials that timed out. Throws StoreError if the journal does not hold together.
   static Store from_journal(const std::string& directory);
   static bool has_database(const std::string& directory);
-  static bool has_journal(const std::string& directory);
+  static bool has_journal(const std::string& directory);  // with something in it
+  // False also of a database whose program was ended before it had created the study.
+  static bool is_begun(const std::string& directory);
   // Until resume_sync(), trials without traces are committed and journalled some dozens at a time,
   // nothing waits for the disk and nothing is read back. A killed program loses trials that were
   // added, and a power cut may damage the file: only for new studies of simulated participants,
@@ -170,6 +172,7 @@ class Store {
   std::vector<SurfaceRow> surfaces();
   void add_surfaces(const StudyRow& study);
   void check_surfaces(const StudyRow& study);  // by their hashes
+  void check_is_of_journal(const JournalSummary& journal);
   bool is_empty();
   void create_or_check(const StudyRow& study, const AcceptText& accept);
   std::optional<std::string> latest_protocol_text();

@@ -106,7 +106,7 @@ std::string language_of(const RunOptions& options) {
   if (!options.language.empty()) {
     return options.language;
   }
-  if (results::Store::has_database(options.directory)) {
+  if (results::Store::is_begun(options.directory)) {
     const auto earlier =
         results::Store::open_existing(options.directory).latest_session(options.participant);
     if (earlier && !earlier->language.empty()) {

@@ -131,7 +131,8 @@ Verification verification_of(results::Store& store, const std::string& directory
         results::differing_study_and_sessions(study, comparable_sessions(store, journal), journal);
     compare(results::to_lines(in_store), results::to_lines(journal.entries), found);
   } catch (const results::StoreError& error) {
-    found.journal_fault = store.sessions().empty() ? unfinished_beginning : error.what();
+    const bool is_unfinished = store.sessions().empty() && !results::Store::has_journal(directory);
+    found.journal_fault = is_unfinished ? unfinished_beginning : error.what();
   }
   return found;
 }

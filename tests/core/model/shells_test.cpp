@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -206,6 +207,22 @@ TEST_CASE("the mesh on which shells are seen fills the plate and its faces",
   }
   TriangleSurface surface{body.mesh.nodes_m, body.mesh.surface.leftCols<3>()};
   CHECK(volume_m3(surface) == Approx(size_m.prod()).epsilon(1e-9));  // closed, outward
+  std::map<std::array<int, 3>, int> tets_with;                       // a face
+  const auto face_of = [](const auto& row, const std::array<int, 3>& corners) {
+    std::array<int, 3> face{row[corners[0]], row[corners[1]], row[corners[2]]};
+    std::ranges::sort(face);
+    return face;
+  };
+  for (const auto& row : body.mesh.tets.rowwise()) {
+    for (const std::array<int, 3>& corners : tet_faces) {
+      ++tets_with[face_of(row, corners)];
+    }
+  }
+  CHECK(std::ranges::count(tets_with, 1, &std::pair<const std::array<int, 3>, int>::second) ==
+        body.mesh.surface.rows());
+  for (const auto& row : body.mesh.surface.rowwise()) {
+    CHECK(tets_with[face_of(row, {0, 1, 2})] == 1);
+  }
   double area_m2 = 0.0;
   for (Eigen::Index triangle = 0; triangle < body.mesh.surface.rows(); ++triangle) {
     area_m2 += triangle_area_m2(body.mesh, triangle);

@@ -36,7 +36,8 @@ TEST_CASE("a comma where a document should begin is no endless row of documents"
   CHECK_THAT(refusal(text + "---\ntitle: another\n"), Contains("more than one YAML document"));
 }
 
-TEST_CASE("elements of lower order are not as flat as cubic ones may be", "[protocols]") {
+TEST_CASE("settings of a mesh are of tetrahedra, cubic ones flatter than others, or of shells",
+          "[protocols]") {
   const auto with = [](const std::string& mesh) {
     return refusal(replaced(testing::contents(testing::shipped("examples/stiffness_jnd.yaml")),
                             "mesh: {order: 2, max_tet_volume_m3: 2.2e-5}", "mesh: " + mesh));
@@ -45,6 +46,8 @@ TEST_CASE("elements of lower order are not as flat as cubic ones may be", "[prot
   CHECK(with("{order: 2, flattening: 20}") == "accepted");
   CHECK_THAT(with("{order: 2, flattening: 40}"), Contains("flattening: beyond 20 is of order 3"));
   CHECK_THAT(with("{flattening: 40}"), Contains("flattening: beyond 20 is of order 3"));
+  CHECK(with("{shell_width_m: 0.1}") == "accepted");
+  CHECK_THAT(with("{shell_width_m: 0.1, order: 2}"), Contains("order: is of tetrahedra"));
 }
 
 TEST_CASE("whole numbers are read as YAML 1.2 has them", "[protocols]") {

@@ -18,9 +18,10 @@ inline constexpr int max_automatic_dofs = 60000;
 // Linear elements if they do, else quadratic ones, smaller in each round, until twice the error
 // that elements of the next order find is within the accuracy: the estimate is at least half of the
 // error (error_estimate.hpp). A plate has one layer of elements, up to `max_chosen_flattening`
-// times wider than thick, as long as these do; a sheet shell elements (is_sheet). A held region smaller than a side must have settled,
-// too. What does not fit within max_automatic_dofs ends with the finest that does: its estimate
-// says what is left. Throws ModelError for points and lines, which hold no solid.
+// times wider than thick, as long as these do; a sheet shell elements (is_sheet). A held region
+// smaller than a side must have settled, too. What does not fit within max_automatic_dofs ends with
+// the finest that does: its estimate says what is left. Throws ModelError for points and lines,
+// which hold no solid.
 SolvedBody solve_on_chosen_mesh(BodySpec body, const SolveMeshed& solve);
 inline constexpr double max_chosen_flattening = 8.0;
 }  // namespace tapstudy::core

@@ -348,12 +348,35 @@ void widen(double by, Estimate& estimate) {
   estimate.bootstrap.reset();
 }
 
+// A decay begins 2 ms after the largest value (taps.hpp), when some modes have fallen by half.
+double amplitude_at_blow(const RepeatedMode& mode) {
+  constexpr double before_s = 0.002;
+  constexpr double most_fall = 1.0;  // nepers
+  return mode.amplitude *
+         std::exp(std::clamp(std::numbers::pi * bandwidth_hz(mode) * before_s, 0.0, most_fall));
+}
+
+// The strongest mode may be doubtful in the beginning, which its reflections disturb.
 double strongest_agreed(const std::vector<RepeatedMode>& modes) {
   double strongest = 0.0;
   for (const RepeatedMode& mode : modes) {
-    strongest = std::max(strongest, mode.standing == Standing::agreed ? mode.amplitude : 0.0);
+    strongest =
+        std::max(strongest, mode.standing == Standing::agreed ? amplitude_at_blow(mode) : 0.0);
   }
   return strongest;
+}
+
+// Reflections of the blow make weaker ones beside a strong mode, and much weaker ones elsewhere.
+bool exceeds_reflections(const RepeatedMode& mode, double strongest,
+                         const std::vector<RepeatedMode>& all) {
+  constexpr double least_beside = 0.1;
+  constexpr double least_alone = 0.06;
+  const bool is_beside = std::ranges::any_of(all, [&](const RepeatedMode& other) {
+    return other.standing == Standing::agreed && other.amplitude > mode.amplitude &&
+           std::abs(centre_of(other) - centre_of(mode)) < most_reach * centre_of(other);
+  });
+  return is_beside ? mode.amplitude >= least_beside * strongest
+                   : amplitude_at_blow(mode) >= least_alone * strongest;
 }
 
 // Where only the blow with its reflections shows a mode, they shift its pole by up to a third of
@@ -369,13 +392,11 @@ RepeatedMode seen_in_blow(RepeatedMode mode) {
 
 std::vector<RepeatedMode> died_before(double after_s, const std::vector<RepeatedMode>& first,
                                       const std::vector<RepeatedMode>& later) {
-  constexpr double least_fall = 0.4;         // nepers
-  constexpr double above_reflections = 0.1;  // reflections of the blow make weaker ones
-  // The strongest mode may be doubtful in the beginning, which its reflections disturb.
+  constexpr double least_fall = 0.4;  // nepers
   const double strongest = std::max(strongest_agreed(first), strongest_agreed(later));
   std::vector<RepeatedMode> died;
   std::ranges::copy_if(first, std::back_inserter(died), [&](const RepeatedMode& mode) {
-    return mode.standing == Standing::agreed && mode.amplitude >= above_reflections * strongest &&
+    return mode.standing == Standing::agreed && exceeds_reflections(mode, strongest, first) &&
            std::numbers::pi * bandwidth_hz(mode) * after_s > least_fall &&
            std::ranges::none_of(later, [&](const RepeatedMode& other) {
              return other.standing == Standing::agreed && are_near(mode, other);

@@ -20,9 +20,10 @@ double settled_after_s(const std::vector<FreeDecay>& decays, const std::vector<i
                        const Band& band, const ModesOfTaps& found);
 // A blow with its reflections and the striker's touch.
 inline constexpr double blow_s = 0.012;
-// Agreed modes, no more than 20 dB below the strongest, that had died away by then (by a third at
-// least) and are missing among what the later decays show: no agreed mode later lies within their
-// half-power bandwidth and its own. Their intervals are wider by what reflections may do.
+// Agreed modes, no more than 24 dB below the strongest at the blow, or, within 15 % of a stronger
+// one, 20 dB where decays begin, that had died away by then (by a third at least) and are missing
+// among what the later decays show: no agreed mode later lies within their half-power bandwidth and
+// its own. Their intervals are wider by what reflections may do.
 std::vector<RepeatedMode> died_before(double after_s, const std::vector<RepeatedMode>& first,
                                       const std::vector<RepeatedMode>& later);
 // Beside the later ones, instead of what doubtful remainders of them are left there, unless one is

@@ -684,6 +684,9 @@ TEST_CASE("what only the blow shows is a mode if reflections cannot be it, known
   REQUIRE(died.size() == 1);
   CHECK(died_before(0.012, {first[2]}, later).empty());  // the strongest is seen later on alone
   CHECK(died[0].frequency_hz.value == first[1].frequency_hz.value);
+  // weak where decays begin, 2 ms after a blow in which it was not
+  CHECK(died_before(0.012, {first[0], certain_mode(6000.0, 0.008, 0.05)}, later).size() == 1);
+  CHECK(died_before(0.012, {first[0], certain_mode(340.0, 0.05, 0.07)}, later).empty());
   CHECK(died[0].frequency_hz.interval.high >= 900.0 + 900.0 * 0.02 / 3.0);
   CHECK(died[0].damping_ratio.interval.low <= 0.02 * 2.0 / 3.0);
   add_died(died, later);

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -91,7 +93,8 @@ void read_equivalence(MapReader& reader, const Protocol& protocol,
   hypothesis.within = reader.number(
       {"within",
        "the largest difference of means that is none: of shares of right answers (0.1), "
-       "steps of a rating or marks on its line; of thresholds the largest ratio (1.25)"},
+       "steps of a rating or marks on its line; of thresholds the largest ratio (1.25); less than "
+       "what two means can differ by"},
       Range::positive(largest));
   if (!hypothesis.stimulus.empty() && hypothesis.stimulus == hypothesis.other_stimulus) {
     reader.reject("to", "is the stimulus itself");
@@ -121,8 +124,60 @@ void read_threshold(MapReader& reader, const std::vector<std::string>& blocks,
   }
 }
 
+// What `within` bounds: a difference of means, or a ratio where values are compared by ratios.
+struct BoundedValue {
+  std::string name;
+  bool is_ratio{false};
+  double largest{std::numeric_limits<double>::infinity()};  // that there can be
+};
+
+BoundedValue adjusted_value(const Adjustment& one, const Adjustment& other) {
+  const double low = std::min(one.values.front(), other.values.front());
+  const double high = std::max(one.values.back(), other.values.back());
+  return one.spacing == Spacing::log ? BoundedValue{"settings", true, high / low}
+                                     : BoundedValue{"settings", false, high - low};
+}
+
+BoundedValue bounded_value(const Block& block, const Block* other) {
+  if (block.comparison && block.comparison->side == Side::either) {
+    return {"points of subjective equality"};
+  }
+  if (block.comparison) {
+    return {"thresholds", true};
+  }
+  if (block.adjustment) {
+    const bool are_both =
+        other != nullptr && other->adjustment && other->adjustment->axis == block.adjustment->axis;
+    return adjusted_value(*block.adjustment, are_both ? *other->adjustment : *block.adjustment);
+  }
+  if (block.rating && block.rating->kind == ScaleKind::likert) {
+    return {fmt::format("ratings in {} steps", block.rating->steps), false,
+            block.rating->steps - 1.0};
+  }
+  return {block.rating ? "marks on a line" : "shares of right answers", false, 1.0};
+}
+
+// Whatever is answered, values would be equal within a bound that none can exceed.
+void check_bound(MapReader& reader, const Hypothesis& hypothesis, const Block& block,
+                 const Block* other) {
+  const BoundedValue value = bounded_value(block, other);
+  const Range allowed{value.is_ratio ? 1.0 : 0.0, value.largest, false, false};
+  if (allowed.contains(hypothesis.within)) {
+    return;
+  }
+  const std::string what = value.is_ratio ? "ratio" : "difference";
+  reader.reject("within", fmt::format("{} is not allowed: it is the largest {} of {} that is none "
+                                      "({})",
+                                      hypothesis.within, what, value.name,
+                                      std::isfinite(value.largest)
+                                          ? fmt::format("{}: no {} exceeds {:g}", allowed.words(),
+                                                        what, value.largest)
+                                          : fmt::format("greater than {}", allowed.low)));
+}
+
 // Blocks are compared by what they measure of a participant, also where procedures choose levels.
-void check_fits_task(MapReader& reader, const Hypothesis& hypothesis, const Block& block) {
+void check_fits_task(MapReader& reader, const Protocol& protocol, const Hypothesis& hypothesis,
+                     const Block& block) {
   const std::optional<Claim> claim = block.task->claim();
   if (is_of_thresholds(hypothesis.claim)) {
     if (!block.comparison || block.comparison->side == Side::either) {
@@ -133,8 +188,8 @@ void check_fits_task(MapReader& reader, const Hypothesis& hypothesis, const Bloc
   if (!hypothesis.other_block.empty()) {
     if (claim != Claim::accuracy_above_chance && !block.adjustment) {
       reader.reject("to_block", "blocks of this task have no value a participant to compare");
-    } else if (block.comparison && hypothesis.within <= 1.0) {
-      reader.reject("within", "is the largest ratio of thresholds, above 1");
+    } else {
+      check_bound(reader, hypothesis, block, protocol.find_block(hypothesis.other_block));
     }
     return;
   }
@@ -147,6 +202,8 @@ void check_fits_task(MapReader& reader, const Hypothesis& hypothesis, const Bloc
     reader.reject("block",
                   "has procedures: its threshold is estimated (claims about it: threshold_ratio, "
                   "threshold_below, `equivalent` with `to_block`)");
+  } else if (hypothesis.claim == Claim::equivalent) {
+    check_bound(reader, hypothesis, block, nullptr);
   }
 }
 
@@ -180,13 +237,17 @@ void read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
   } else if (is_of_thresholds(hypothesis.claim)) {
     read_threshold(reader, blocks, hypothesis);
   } else if (hypothesis.claim != Claim::accuracy_above_chance) {
+    // of another claim there is no stimulus to ask for; a schema's block has no name
+    const bool fits =
+        block == nullptr || block->name.empty() || block->task->claim() == hypothesis.claim;
     hypothesis.stimulus = reader.word(
         {"stimulus",
          "stimulus of the block that is expected to be chosen, or rated highest, or equal to `to`"},
-        "stimulus of the block", block != nullptr ? block->stimuli : stimulus_names(protocol));
+        "stimulus of the block", block != nullptr ? block->stimuli : stimulus_names(protocol),
+        fits ? std::nullopt : std::optional<std::string>{""});
   }
   if (block != nullptr) {
-    check_fits_task(reader, hypothesis, *block);
+    check_fits_task(reader, protocol, hypothesis, *block);
   }
   protocol.hypotheses.push_back(std::move(hypothesis));
 }

@@ -1,0 +1,53 @@
+// Hypotheses that nothing could contradict.
+#include "core/error.hpp"
+#include "protocols/reader/read_protocol.hpp"
+#include "support/catch.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+namespace {
+std::string answer_to_equivalence(const std::string& keys) {
+  const std::string file = testing::source("tests/data/every_key.yaml");
+  const std::string usual =
+      "block: rated.day_1, claim: equivalent, stimulus: a, to: b, within: 0.5";
+  try {
+    protocols::parse_protocol(
+        testing::replaced(testing::contents(file), usual, "claim: equivalent, " + keys), file);
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+}  // namespace
+
+TEST_CASE("an equivalence within a bound that no difference can exceed is refused",
+          "[protocols][hypotheses]") {
+  struct Case {
+    const char* compared;
+    const char* allowed;  // just
+    const char* refused;
+    const char* said;
+  };
+  const auto [compared, allowed, refused, said] = GENERATE(values<Case>({
+      {"block: abx, stimulus: a, to: b", "0.99", "1",
+       "1 is not allowed: it is the largest difference of shares of right answers that is none "
+       "(greater than 0 and less than 1: no difference exceeds 1)"},
+      {"block: abx, to_block: pairs", "0.99", "1.25", "1.25 is not allowed"},
+      {"block: rated.day_1, stimulus: a, to: b", "3.9", "4",
+       "of ratings in 5 steps that is none (greater than 0 and less than 4"},
+      {"block: marked, stimulus: a, to: b", "0.99", "1", "of marks on a line"},
+      {"block: cut_and_try, to_block: adjusted", "3.9", "4",
+       "the largest ratio of settings that is none (greater than 1 and less than 4"},
+      {"block: cut_and_try, to_block: adjusted", "1.1", "1", "the largest ratio of settings"},
+      {"block: adjusted, to_block: cut_and_try", "199", "200",
+       "the largest difference of settings that is none (greater than 0 and less than 200"},
+      {"block: stiffness, to_block: stiffness_by_density", "1.1", "1",
+       "the largest ratio of thresholds that is none (greater than 1)"},
+  }));
+  CAPTURE(compared);
+  const auto within = [&, of = std::string{compared}](const std::string& bound) {
+    return answer_to_equivalence(of + ", within: " + bound);
+  };
+  CHECK(within(allowed) == "accepted");
+  CHECK_THAT(within(refused), Contains("hypotheses[2].within: ") && Contains(said));
+}

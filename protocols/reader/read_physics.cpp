@@ -31,6 +31,8 @@ core::Damping read_fit(MapReader& damping) {
 
 core::Damping read_damping(MapReader& damping) {
   if (damping.has("modal_ratios")) {
+    damping.refuse_beside("modal_ratios", {"ratio", "measured", "first_ratio", "last_ratio",
+                                           "alpha_per_s", "beta_s"});
     core::ModalDamping modal{damping.number_list(
         {"modal_ratios", "one ratio per mode in the band, lowest first"}, allowed::damping_ratio)};
     if (damping.has("further_ratio")) {
@@ -42,13 +44,17 @@ core::Damping read_damping(MapReader& damping) {
     return modal;
   }
   if (damping.has("ratio")) {
+    damping.refuse_beside("ratio",
+                          {"measured", "first_ratio", "last_ratio", "alpha_per_s", "beta_s"});
     return core::ConstantDamping{
         damping.number({"ratio", "the same damping ratio for every mode"}, allowed::damping_ratio)};
   }
   if (damping.has("measured")) {
+    damping.refuse_beside("measured", {"first_ratio", "last_ratio", "alpha_per_s", "beta_s"});
     return read_fit(damping);
   }
   if (damping.has("first_ratio") || damping.has("last_ratio")) {
+    damping.refuse_beside("first_ratio", {"alpha_per_s", "beta_s"});
     return core::TwoRatioDamping{
         damping.number({"first_ratio", "damping ratio of the lowest mode in the band"},
                        allowed::damping_ratio),

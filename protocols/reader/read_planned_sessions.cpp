@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "protocols/reader/read_sections.hpp"
@@ -79,6 +80,10 @@ std::vector<Block> blocks_of_sessions(const std::vector<Block>& blocks,
     }
     session.blocks = names;
   }
+  std::ranges::copy_if(blocks, std::back_inserter(all), [&](const Block& block) {  // an error
+    return std::ranges::none_of(as_written,
+                                [&](const PlannedSession& one) { return has(one, block); });
+  });
   return all;
 }
 

@@ -77,23 +77,44 @@ std::string Problems::place(int line, int column, const std::string& key_path) c
                      key_path);
 }
 
-void Problems::add(int line, int column, const std::string& key_path, const std::string& what) {
-  const std::string at = place(line, column, key_path);
-  if (places_.insert(at).second) {
-    problems_.push_back({line, column, at + ": " + what});
+void Problems::add(int line, int column, const std::string& key_path, const std::string& what,
+                   const std::optional<std::string>& may_follow) {
+  if (places_.insert(place(line, column, key_path)).second) {
+    problems_.push_back({line, column, key_path, what, may_follow});
   }
+}
+
+bool Problems::withdraw_missing(const std::string& key_path) {
+  return std::erase_if(problems_, [&](const Problem& problem) {
+           return problem.key_path == key_path && problem.what == key_is_missing;
+         }) > 0;
+}
+
+bool Problems::follows(const Problem& problem) const {
+  const auto is_at_or_below = [&](const std::string& path) {
+    const std::string& whole = *problem.may_follow;
+    return whole.empty() || path == whole || path.starts_with(whole + ".") ||
+           path.starts_with(whole + "[");
+  };
+  return problem.may_follow && std::ranges::any_of(problems_, [&](const Problem& other) {
+           return !other.may_follow && is_at_or_below(other.key_path);
+         });
 }
 
 void Problems::throw_if_any() const {
   if (problems_.empty()) {
     return;
   }
-  std::vector<Problem> sorted = problems_;
+  std::vector<Problem> sorted;
+  std::ranges::copy_if(problems_, std::back_inserter(sorted),
+                       [this](const Problem& problem) { return !follows(problem); });
   std::ranges::stable_sort(sorted, {}, [](const Problem& problem) {
     return std::tuple{problem.line, problem.column};
   });
   std::vector<std::string> lines;
-  std::ranges::transform(sorted, std::back_inserter(lines), &Problem::text);
+  std::ranges::transform(sorted, std::back_inserter(lines), [this](const Problem& problem) {
+    return place(problem.line, problem.column, problem.key_path) + ": " + problem.what;
+  });
   throw core::InvalidInput{fmt::format("{}", fmt::join(lines, "\n"))};
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@ std::string printable(const std::string& text);
 // A value as described in messages: 'text', a list, a mapping, nothing.
 std::string kind_of(const YAML::Node& node);
 
+inline constexpr const char* key_is_missing = "is missing";
+
 // Collects all problems of one file, so that they are reported together; and every key that was
 // looked up, so that the schema can be checked against the reader.
 class Problems {
@@ -19,8 +22,12 @@ class Problems {
   // The text of the file, so that columns can be told in characters.
   void read_from(const std::string& text);
   // line and column count from 0, the column in bytes, as the parser has it. Of one key the first
-  // problem is kept: others follow from it.
-  void add(int line, int column, const std::string& key_path, const std::string& what);
+  // problem is kept: others follow from it. One that `may_follow` from what cannot be read at or
+  // below that path (empty: anywhere) is told only where all of that can be read.
+  void add(int line, int column, const std::string& key_path, const std::string& what,
+           const std::optional<std::string>& may_follow = {});
+  // The key is there, misspelt: it is not missing as well. False: nobody said that it was.
+  bool withdraw_missing(const std::string& key_path);
   std::size_t count() const { return problems_.size() + unread_; }
   // A value that is described but not read counts as a problem: nothing can be made of it.
   void add_unread() { ++unread_; }
@@ -38,8 +45,12 @@ class Problems {
   struct Problem {
     int line;
     int column;
-    std::string text;
+    std::string key_path;
+    std::string what;
+    std::optional<std::string> may_follow;
   };
+  bool follows(const Problem& problem) const;
+
   std::string file_;
   std::vector<std::string> lines_;  // of the text
   std::vector<Problem> problems_;

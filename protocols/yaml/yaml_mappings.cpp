@@ -13,9 +13,10 @@ void MapReader::read_inner(const YAML::Node& node, const std::string& path,
                            const std::string& pattern, const ReadMap& read) {
   MapReader inner{node, path, pattern, *problems_, translations_};
   if (!node.IsMap()) {
-    inner.reject(fmt::format("{} is not a mapping", kind_of(node)));
+    reject_at(node, path, fmt::format("{} is not a mapping", kind_of(node)));
     return;
   }
+  inner.reject_decimal_commas();
   read(inner);
   inner.finish();
 }
@@ -243,6 +244,7 @@ int MapReader::count_given(const std::vector<std::string>& keys, Presence presen
 }
 
 bool MapReader::depends_on_others(bool condition) {
+  depends_on_others_ = depends_on_others_ || !condition;
   return pass_ == nullptr
              ? condition
              : pass_->ask({Description::Question::Kind::hidden, "", {false, true}}) == 1;
@@ -256,7 +258,21 @@ void MapReader::refuse(const std::string& key, const std::string& what) {
   if (pass_ != nullptr) {
     pass_->remove(key);
   } else if (has(key)) {
-    reject(key, what);
+    known_.push_back(key);
+    const YAML::Node& whole = *node_;
+    reject_at(whole[key], path_of(key), what,
+              is_choice_unread_ ? std::optional{path_} : std::nullopt);
+  }
+}
+
+void MapReader::refuse_beside(const std::string& chosen, const std::vector<std::string>& others) {
+  const YAML::Node& whole = *node_;
+  const auto given = std::ranges::find_if(
+      others, [&](const std::string& other) { return whole[other].IsDefined(); });
+  if (pass_ == nullptr && given != others.end()) {
+    reject_at(whole[*given], path_of(*given),
+              fmt::format("stands beside {}: one of them says it", chosen));
+    known_.insert(known_.end(), given, others.end());
   }
 }
 
@@ -264,7 +280,7 @@ void MapReader::refuse_former(const std::string& key, const std::string& now) {
   const YAML::Node& whole = *node_;
   if (pass_ == nullptr && whole[key].IsDefined()) {
     known_.push_back(key);
-    reject(key, "is a key of an earlier version: now it is " + now);
+    reject_at(whole[key], path_of(key), "is a key of an earlier version: now it is " + now);
   }
 }
 
@@ -286,20 +302,36 @@ void MapReader::check_count(const std::string& key, const std::vector<std::strin
   }
 }
 
+void MapReader::reject_unknown(const YAML::Node& node, const std::string& key) {
+  std::vector<std::string> allowed = known_;
+  std::ranges::copy_if(looked_for_, std::back_inserter(allowed), [&](const std::string& other) {
+    return std::ranges::find(allowed, other) == allowed.end();
+  });
+  const std::string hint = did_you_mean(key, allowed);
+  const bool is_misspelt = std::ranges::any_of(allowed, [&](const std::string& other) {
+    return hint == did_you_mean(other, {other}) && problems_->withdraw_missing(path_of(other));
+  });
+  if (is_choice_unread_ && !is_misspelt) {
+    return;
+  }
+  const std::optional<std::string> may_follow =
+      depends_on_others_ && hint.empty() ? std::optional<std::string>{""} : std::nullopt;
+  reject_at(node, path_of(key),
+            fmt::format("is not a known key (one of: {}{})", fmt::join(allowed, ", "), hint),
+            may_follow);
+}
+
 void MapReader::finish() {
   std::vector<std::string> seen;
-  std::vector<std::string> allowed = known_;
-  std::ranges::copy_if(looked_for_, std::back_inserter(allowed), [&](const std::string& key) {
-    return std::ranges::find(allowed, key) == allowed.end();
-  });
   for (const auto& entry : *node_) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+    if (decimals_.contains(key)) {
+      continue;
+    }
     if (std::ranges::find(known_, key) == known_.end()) {
-      reject_at(entry.first, path_of(key),
-                fmt::format("is not a known key (one of: {}{})", fmt::join(allowed, ", "),
-                            did_you_mean(key, allowed)));
+      reject_unknown(entry.first, key);
     } else if (std::ranges::find(seen, key) != seen.end()) {
-      reject_at(entry.first, path_of(key), "is there twice");
+      reject_at(entry.first, path_of(key), "is there twice", path_of(key));  // nothing follows
     }
     seen.push_back(key);
   }

@@ -147,20 +147,21 @@ std::string MapReader::pattern_of(const std::string& key) const {
   return pattern_.empty() ? key : pattern_ + "." + key;
 }
 
-void MapReader::reject_at(const YAML::Node& node, const std::string& path,
-                          const std::string& what) {
+void MapReader::reject_at(const YAML::Node& node, const std::string& path, const std::string& what,
+                          const std::optional<std::string>& may_follow) {
   if (pass_ != nullptr) {
     return;
   }
-  problems_->add(std::max(0, node.Mark().line), std::max(0, node.Mark().column), path, what);
+  problems_->add(std::max(0, node.Mark().line), std::max(0, node.Mark().column), path, what,
+                 may_follow);
 }
 void MapReader::reject(const std::string& what) {
-  reject_at(written(), path_, what);
+  reject_at(written(), path_, what, path_);
 }
 void MapReader::reject(const std::string& key, const std::string& what) {
   const YAML::Node& whole = *node_;
   const YAML::Node value = whole[key];
-  reject_at(value.IsDefined() ? value : written(), path_of(key), what);
+  reject_at(value.IsDefined() ? value : written(), path_of(key), what, path_);
   if (std::ranges::find(known_, key) == known_.end()) {
     known_.push_back(key);  // it has its error
   }
@@ -195,7 +196,7 @@ std::optional<YAML::Node> MapReader::find(const std::string& key, bool required)
     return value;
   }
   if (required) {
-    reject(key, "is missing");
+    reject_at(written(), path_of(key), key_is_missing);
   }
   return std::nullopt;
 }
@@ -219,14 +220,54 @@ std::optional<std::int64_t> whole_number_in(std::string_view text) {
       error == std::errc{} && stopped == end && !digits.empty() && digits.front() != '-';
   return is_whole ? std::optional{is_negative ? -number : number} : std::nullopt;
 }
+
+bool is_all_digits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// What somebody means who writes a decimal comma, or the unit that the key states.
+std::string hint_for_number(const YAML::Node& node) {
+  const std::string text = node.IsScalar() ? node.Scalar() : "";
+  double number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const std::string_view rest{end, static_cast<std::size_t>(text.data() + text.size() - end)};
+  if (error != std::errc{} || rest.empty()) {
+    return "";
+  }
+  if (rest.front() == ',') {
+    return " (decimals take a point, and nothing separates thousands)";
+  }
+  const std::string number_text = text.substr(0, text.size() - rest.size());
+  const auto unit =
+      static_cast<unsigned char>(rest[std::min(rest.find_first_not_of(' '), rest.size() - 1)]);
+  const bool is_unit = std::isalpha(unit) != 0 || unit == '%' || unit >= 0x80;
+  return is_unit ? fmt::format(" (the key states the unit: write {})", number_text) : "";
+}
 }  // namespace
+
+// {mass_kg: 0,058} has a key 058 without a value.
+void MapReader::reject_decimal_commas() {
+  std::optional<std::pair<YAML::Node, YAML::Node>> before;
+  for (const auto& entry : *node_) {
+    if (before && before->second.IsScalar() && entry.first.IsScalar() &&
+        is_all_digits(entry.first.Scalar()) && entry.second.IsNull() &&
+        whole_number_in(before->second.Scalar())) {
+      reject_at(before->second, path_of(before->first.Scalar()),
+                fmt::format("{},{} is not a number (decimals take a point)",
+                            before->second.Scalar(), entry.first.Scalar()));
+      decimals_.insert(entry.first.Scalar());
+    }
+    before.emplace(entry.first, entry.second);
+  }
+}
 
 std::optional<double> MapReader::as_number(const YAML::Node& node, const std::string& path,
                                            const Range& range) {
   const auto whole = node.IsScalar() ? whole_number_in(node.Scalar()) : std::nullopt;
   auto value = static_cast<double>(whole.value_or(0));
   if (!node.IsScalar() || (!whole && !YAML::convert<double>::decode(node, value))) {
-    reject_at(node, path, fmt::format("{} is not a number", kind_of(node)));
+    reject_at(node, path,
+              fmt::format("{} is not a number{}", kind_of(node), hint_for_number(node)));
     return std::nullopt;
   }
   if (!range.contains(value)) {
@@ -259,7 +300,8 @@ int MapReader::integer(const Key& key, int low, int high, std::optional<int> oth
   }
   const auto value = node->IsScalar() ? whole_number_in(node->Scalar()) : std::nullopt;
   if (!value) {
-    reject_at(*node, path_of(key.name), fmt::format("{} is not a whole number", kind_of(*node)));
+    reject_at(*node, path_of(key.name),
+              fmt::format("{} is not a whole number{}", kind_of(*node), hint_for_number(*node)));
     return low;
   }
   if (*value < low || *value > high) {
@@ -283,6 +325,7 @@ bool MapReader::yes_or_no(const Key& key, std::optional<bool> otherwise) {
   if (node && !YAML::convert<bool>::decode(*node, value)) {
     reject_at(*node, path_of(key.name),
               fmt::format("{} is neither true nor false", kind_of(*node)));
+    is_choice_unread_ = true;
   }
   return value;
 }
@@ -367,7 +410,8 @@ bool MapReader::is_allowed(const YAML::Node& node, const std::string& path, cons
   const std::string hint = node.IsScalar() ? did_you_mean(node.Scalar(), allowed) : "";
   reject_at(node, path,
             fmt::format("{} is not a known {} (one of: {}{})", kind_of(node), kind,
-                        fmt::join(allowed, ", "), hint));
+                        fmt::join(allowed, ", "), hint),
+            allowed.empty() ? std::optional<std::string>{""} : std::nullopt);  // who names them?
   return false;
 }
 
@@ -378,8 +422,11 @@ std::string MapReader::word(const Key& key, const std::string& kind,
     return described_word(*pass_, key, allowed, otherwise);
   }
   const auto node = find(key.name, !otherwise);
-  const std::string harmless = otherwise.value_or("");
-  return node && is_allowed(*node, path_of(key.name), kind, allowed) ? node->Scalar() : harmless;
+  if (node && is_allowed(*node, path_of(key.name), kind, allowed)) {
+    return node->Scalar();
+  }
+  is_choice_unread_ = is_choice_unread_ || node || !otherwise;
+  return otherwise.value_or("");
 }
 
 void MapReader::check_format(const std::string& version) {

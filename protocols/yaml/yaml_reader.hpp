@@ -82,7 +82,8 @@ class MapReader {
   bool has(const std::string& key);
   // How many of these are given; at least one, or exactly one, has to be.
   int count_given(const std::vector<std::string>& keys, Presence presence);
-  // The condition, which other sections decide: a schema allows either.
+  // The condition, which other sections decide: a schema allows either. Where it is false, unknown
+  // keys may be what is wrong in another section.
   bool depends_on_others(bool condition);
   // A range as it is without a file, and as it is with the other keys of this one.
   Range narrowed(const Range& stated, const Range& here) const;
@@ -90,6 +91,8 @@ class MapReader {
   void leave(const std::string& key) { known_.push_back(key); }
   // Rejects the key if it is given: it is not for what the other keys say.
   void refuse(const std::string& key, const std::string& what);
+  // The same of keys that say another way what the chosen one says; of several given, the first.
+  void refuse_beside(const std::string& chosen, const std::vector<std::string>& others);
   // Rejects a key of an earlier version, by the name of the one that says it now.
   void refuse_former(const std::string& key, const std::string& now);
   // Rejects the key's value if it is not right; `schema` says the same in JSON schema's members.
@@ -175,7 +178,8 @@ class MapReader {
   // "file:line:column: key.path" of this mapping, or of one of its keys.
   std::string stated_at() const;
   std::string stated_at(const std::string& key) const;
-  // A problem with this mapping as a whole, or with one of its keys.
+  // A problem with this mapping as a whole, or with one of its keys, found by looking at values
+  // that were read: not told where any of the mapping's could not be.
   void reject(const std::string& what);
   void reject(const std::string& key, const std::string& what);
   std::size_t problems_in_file() const { return problems_->count(); }  // so far
@@ -200,7 +204,10 @@ class MapReader {
   std::optional<YAML::Node> find(const std::string& key, bool required);
   std::string path_of(const std::string& key) const;
   std::string pattern_of(const std::string& key) const;
-  void reject_at(const YAML::Node& node, const std::string& path, const std::string& what);
+  void reject_at(const YAML::Node& node, const std::string& path, const std::string& what,
+                 const std::optional<std::string>& may_follow = {});
+  void reject_decimal_commas();
+  void reject_unknown(const YAML::Node& node, const std::string& key);
   const YAML::Node& written() const { return list_ ? *list_ : *node_; }
   std::optional<double> as_number(const YAML::Node& node, const std::string& path,
                                   const Range& range);
@@ -218,7 +225,10 @@ class MapReader {
   std::unique_ptr<YAML::Node> list_;  // of which node_ was made; else nullptr
   std::string path_;
   std::string pattern_;
+  std::set<std::string> decimals_;  // behind a comma, which makes them keys
   bool has_free_names_{false};
+  bool is_choice_unread_{false};  // a word that may decide which keys there are
+  bool depends_on_others_{false};
   std::vector<std::string> known_;
   std::vector<std::string> looked_for_;  // by `has`: keys that may be given, read or not
   Problems* problems_;

@@ -180,7 +180,7 @@ TEST_CASE("an unknown key is refused with its place and the key that was meant",
   CHECK_THAT(refusal(text), Contains("study.yaml:21:3: rendering.penalty_stifness_n_per_m: is not "
                                      "a known key"));
   CHECK_THAT(refusal(text), Contains("did you mean 'penalty_stiffness_n_per_m'?"));
-  CHECK_THAT(refusal(text), Contains("rendering.penalty_stiffness_n_per_m: is missing"));
+  CHECK_THAT(refusal(text), !Contains("is missing"));
 }
 
 TEST_CASE("all that is wrong is said at once, in the order of the file", "[protocols]") {

@@ -19,6 +19,7 @@
 #include "analysis/report/study/retest.hpp"
 #include "core/error.hpp"
 #include "core/model/fixation.hpp"
+#include "core/model/shells/shell_elements.hpp"
 #include "core/random/rng.hpp"
 #include "core/techniques/technique.hpp"
 #include "core/text/plain_text.hpp"
@@ -519,12 +520,33 @@ std::string springs_before(const protocols::Protocol& protocol,
                    "region holds",
                    fmt::join(versions, ", "), fmt::join(names, ", "));
 }
+
+std::string sheets_before(const protocols::Protocol& protocol,
+                          const std::vector<results::SessionRow>& sessions) {
+  const std::set<std::string> versions = versions_before(0, 5, sessions);
+  std::vector<std::string> names;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.technique->needs_model() && stimulus.plate->mesh.is_automatic &&
+        core::is_sheet(stimulus.plate->shape)) {
+      names.push_back(stimulus.name);
+    }
+  }
+  return versions.empty() || names.empty()
+             ? ""
+             : fmt::format(
+                   "sessions run by tapstudy {}: mesh: auto took tetrahedra for {}, and takes "
+                   "shell "
+                   "elements from 0.5.0 on, whose frequencies differ by up to what the study's "
+                   "accuracy allows",
+                   fmt::join(versions, ", "), fmt::join(names, ", "));
+}
 }  // namespace
 
 std::vector<std::string> rendered_by_earlier_versions(
     const protocols::Protocol& protocol, const std::vector<results::SessionRow>& sessions) {
   std::vector<std::string> said{coupled_fingers_before(protocol, sessions),
-                                springs_before(protocol, sessions)};
+                                springs_before(protocol, sessions),
+                                sheets_before(protocol, sessions)};
   std::erase(said, "");
   return said;
 }

@@ -44,3 +44,27 @@ TEST_CASE("a report says that earlier versions held springs otherwise, of plates
   CHECK_THAT(said_of_feet("0.3.0").front(), Contains("sessions run by tapstudy 0.3.0: springs"));
   CHECK(said_of_feet("0.4.0").empty());
 }
+
+TEST_CASE("a report says that sheets with an automatic mesh had other elements before",
+          "[runner][report]") {
+  const auto said_of_strip = [](const std::string& size, const std::string& mesh,
+                                const std::string& version) {
+    std::vector<results::SessionRow> sessions(1);
+    sessions.front().program_version = version;
+    const std::string text =
+        testing::contents(testing::shipped("examples/cantilever_techniques.yaml"));
+    return runner::rendered_by_earlier_versions(
+        protocols::parse_protocol(
+            testing::replaced(testing::replaced(text, "[0.3, 0.04, 0.01]", size),
+                              "{order: 2, max_tet_volume_m3: 5.0e-7}", mesh),
+            "strip.yaml"),
+        sessions);
+  };
+  const std::string thin = "[0.3, 0.1, 0.002]";
+  REQUIRE(said_of_strip(thin, "auto", "0.4.0").size() == 1);
+  CHECK_THAT(said_of_strip(thin, "auto", "0.4.0").front(),
+             Contains("tapstudy 0.4.0: mesh: auto took tetrahedra for finite_elements, and takes"));
+  CHECK(said_of_strip(thin, "auto", "0.5.0").empty());
+  CHECK(said_of_strip(thin, "{order: 3, flattening: 20}", "0.4.0").empty());
+  CHECK(said_of_strip("[0.3, 0.1, 0.02]", "auto", "0.4.0").empty());
+}

@@ -167,7 +167,9 @@ class AnswerReader {
   bool changes_often(std::size_t place) const {
     std::set<std::string_view> values;
     for (const CsvRow& row : std::span{csv_.text.rows}.subspan(1)) {
-      values.insert(row.cells.size() == header().size() ? row.cells[place] : "");
+      if (row.cells.size() == header().size()) {  // else it is refused at its line
+        values.insert(row.cells[place]);
+      }
     }
     return 2 * values.size() > csv_.text.rows.size() - 1;
   }

@@ -101,15 +101,15 @@ bool begins_with_any(const std::string& word, std::span<const std::string_view> 
 }
 
 // In the languages of the tables that are known.
-constexpr std::array<std::string_view, 33> practice_stems{
-    "practi",   "prácti",    "práti",      "prati",    "train",   "entrain", "entraîn",
-    "entren",   "warm",      "famili",     "tutorial", "demo",    "übung",   "uebung",
-    "einübung", "probelauf", "probedurch", "oefen",    "esercit", "allenam", "treino",
-    "övning",   "øvelse",    "øving",      "harjoit",  "trening", "ćwicz",   "трениров",
-    "упражн",   "練習",      "练习",       "連習",     "연습"};
-constexpr std::array<std::string_view, 12> uncounted_stems{
-    "exclu",     "ausgeschl", "reject", "discard", "invalid", "catch",
-    "attention", "filler",    "dummy",  "outlier", "bot",     "bad"};
+constexpr std::array<std::string_view, 34> practice_stems{
+    "practi",   "prácti",   "práti",      "prati",      "train",    "entrain", "entraîn",
+    "entren",   "warmup",   "familiaris", "familiariz", "tutorial", "demo",    "übung",
+    "uebung",   "einübung", "probelauf",  "probedurch", "oefen",    "esercit", "allenam",
+    "treino",   "övning",   "øvelse",     "øving",      "harjoit",  "trening", "ćwicz",
+    "трениров", "упражн",   "練習",       "练习",       "連習",     "연습"};
+constexpr std::array<std::string_view, 10> uncounted_stems{
+    "exclu", "ausgeschl", "reject", "discard", "invalid",
+    "catch", "attention", "filler", "dummy",   "outlier"};
 constexpr std::array<std::string_view, 6> counted_stems{"includ", "inclus", "valid",
                                                         "keep",   "usable", "accept"};
 
@@ -124,7 +124,9 @@ bool is_called_uncounted(const std::string& cell) {
     return false;
   }
   const std::string read = as_read(cell);
-  return is_practice_word(words.front()) || read == "survey preview" || read == "survey test" ||
+  const bool is_warm_up = words.size() > 1 && words[0] == "warm" && words[1] == "up";
+  return is_practice_word(words.front()) || is_warm_up || read == "survey preview" ||
+         read == "survey test" ||
          (words.size() <= 2 && begins_with_any(words.front(), uncounted_stems));
 }
 }  // namespace

@@ -166,6 +166,19 @@ TEST_CASE("a word at everybody's first answers alone may be practice, in any lan
   CHECK(outcome_of(table_with("zork", half), keys()) == "accepted");
 }
 
+TEST_CASE("words that only begin like those of practice and exclusion are no such words",
+          "[analysis][answer_tables]") {
+  const auto [one, other] = GENERATE(table<std::string, std::string>({{"bottom", "top"},
+                                                                      {"warm", "cold"},
+                                                                      {"familiar", "new"},
+                                                                      {"bad", "good"},
+                                                                      {"both", "left"}}));
+  const std::string text = table_with("zork", [one = one, other = other](const Trial& trial) {
+    return trial.number % 6 == 5 ? one : other;
+  });
+  CHECK(outcome_of(text, keys()) == "accepted");
+}
+
 TEST_CASE("rows that a column calls excluded, or no trial that counts, are asked about",
           "[analysis][answer_tables]") {
   const auto [name, cell, other] =

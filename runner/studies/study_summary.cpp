@@ -526,8 +526,8 @@ std::string sheets_before(const protocols::Protocol& protocol,
   const std::set<std::string> versions = versions_before(0, 5, sessions);
   std::vector<std::string> names;
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    if (stimulus.technique->needs_model() && stimulus.plate->mesh.is_automatic &&
-        core::is_sheet(stimulus.plate->shape)) {
+    if (stimulus.technique->needs_model() && stimulus.technique->name != "beam" &&
+        stimulus.plate->mesh.is_automatic && core::is_sheet(stimulus.plate->shape)) {
       names.push_back(stimulus.name);
     }
   }

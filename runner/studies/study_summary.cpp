@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <set>
@@ -394,12 +395,16 @@ std::vector<std::pair<std::string, std::string>> provenance(
   return all;
 }
 
+// Whether its model has elements: not a beam's, in closed form.
+bool is_meshed(const protocols::Stimulus& stimulus) {
+  return stimulus.technique->needs_model() && !stimulus.technique->needs_beam();
+}
+
 // Of studies of which some were begun before the usual element order changed, a later one.
 void check_states_orders(results::Store& later, const std::vector<std::string>& directories) {
   const protocols::Protocol protocol = stored_protocol(later);
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    if (stimulus.technique->needs_model() && !stimulus.technique->needs_beam() &&
-        stimulus.plate->mesh.order == core::chosen_order) {
+    if (is_meshed(stimulus) && stimulus.plate->mesh.order == core::chosen_order) {
       throw core::InvalidInput{fmt::format(
           "{}: the plate of '{}' states no mesh.order, so that its elements are linear in studies "
           "begun by tapstudy before 0.3, and in the others are not: their answers cannot be put "
@@ -502,51 +507,49 @@ bool is_on_springs(const protocols::Stimulus& stimulus) {
                                  std::ranges::any_of(stimulus.contacts->bodies, has_springs))));
 }
 
-std::string springs_before(const protocols::Protocol& protocol,
-                           const std::vector<results::SessionRow>& sessions) {
-  const std::set<std::string> versions = versions_before(0, 4, sessions);
-  std::vector<std::string> names;
-  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    if (is_on_springs(stimulus)) {
-      names.push_back(stimulus.name);
-    }
-  }
-  return versions.empty() || names.empty()
-             ? ""
-             : fmt::format(
-                   "sessions run by tapstudy {}: springs under {} held parts of triangles where a "
-                   "region's edge cuts through them, so that frequencies may have been some per "
-                   "cent higher; from 0.4.0 on they hold the nodes that a rigid fixation of the "
-                   "region holds",
-                   fmt::join(versions, ", "), fmt::join(names, ", "));
+bool is_automatic_sheet(const protocols::Stimulus& stimulus) {
+  return is_meshed(stimulus) && stimulus.plate->mesh.is_automatic &&
+         core::is_sheet(stimulus.plate->shape);
 }
 
-std::string sheets_before(const protocols::Protocol& protocol,
-                          const std::vector<results::SessionRow>& sessions) {
-  const std::set<std::string> versions = versions_before(0, 5, sessions);
+// What was otherwise of some stimuli until version 0.`minor`; words: with {} for their names.
+struct Otherwise {
+  int minor;
+  bool (*concerns)(const protocols::Stimulus& stimulus);
+  const char* words;
+};
+constexpr std::array otherwise{
+    Otherwise{4, is_on_springs,
+              "springs under {} held parts of triangles where a region's edge cuts through them, "
+              "so that frequencies may have been some per cent higher; from 0.4.0 on they hold the "
+              "nodes that a rigid fixation of the region holds"},
+    Otherwise{5, is_automatic_sheet,
+              "mesh: auto took tetrahedra for {}, and takes shell elements from 0.5.0 on, whose "
+              "frequencies differ by up to what the study's accuracy allows"}};
+
+// Empty: nothing was otherwise.
+std::string stimuli_before(const Otherwise& change, const protocols::Protocol& protocol,
+                           const std::vector<results::SessionRow>& sessions) {
+  const std::set<std::string> versions = versions_before(0, change.minor, sessions);
   std::vector<std::string> names;
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
-    if (stimulus.technique->needs_model() && stimulus.technique->name != "beam" &&
-        stimulus.plate->mesh.is_automatic && core::is_sheet(stimulus.plate->shape)) {
+    if (change.concerns(stimulus)) {
       names.push_back(stimulus.name);
     }
   }
   return versions.empty() || names.empty()
              ? ""
-             : fmt::format(
-                   "sessions run by tapstudy {}: mesh: auto took tetrahedra for {}, and takes "
-                   "shell "
-                   "elements from 0.5.0 on, whose frequencies differ by up to what the study's "
-                   "accuracy allows",
-                   fmt::join(versions, ", "), fmt::join(names, ", "));
+             : fmt::format("sessions run by tapstudy {}: ", fmt::join(versions, ", ")) +
+                   fmt::format(fmt::runtime(change.words), fmt::join(names, ", "));
 }
 }  // namespace
 
 std::vector<std::string> rendered_by_earlier_versions(
     const protocols::Protocol& protocol, const std::vector<results::SessionRow>& sessions) {
-  std::vector<std::string> said{coupled_fingers_before(protocol, sessions),
-                                springs_before(protocol, sessions),
-                                sheets_before(protocol, sessions)};
+  std::vector<std::string> said{coupled_fingers_before(protocol, sessions)};
+  for (const Otherwise& change : otherwise) {
+    said.push_back(stimuli_before(change, protocol, sessions));
+  }
   std::erase(said, "");
   return said;
 }

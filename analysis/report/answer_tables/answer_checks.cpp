@@ -5,15 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
-#include <span>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
 #include "analysis/report/answer_tables/foreign_text.hpp"
-#include "analysis/report/answer_tables/other_columns.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -93,57 +90,6 @@ std::optional<bool> right_or_wrong(const std::string& cell) {
   return is_one_of(right)   ? std::optional{true}
          : is_one_of(wrong) ? std::optional{false}
                             : std::nullopt;
-}
-
-namespace {
-bool begins_with_any(const std::string& word, std::span<const std::string_view> stems) {
-  return std::ranges::any_of(stems, [&](std::string_view stem) { return word.starts_with(stem); });
-}
-
-// In the languages of the tables that are known.
-constexpr std::array<std::string_view, 34> practice_stems{
-    "practi",   "prácti",   "práti",      "prati",      "train",    "entrain", "entraîn",
-    "entren",   "warmup",   "familiaris", "familiariz", "tutorial", "demo",    "übung",
-    "uebung",   "einübung", "probelauf",  "probedurch", "oefen",    "esercit", "allenam",
-    "treino",   "övning",   "øvelse",     "øving",      "harjoit",  "trening", "ćwicz",
-    "трениров", "упражн",   "練習",       "练习",       "連習",     "연습"};
-constexpr std::array<std::string_view, 10> uncounted_stems{
-    "exclu", "ausgeschl", "reject", "discard", "invalid",
-    "catch", "attention", "filler", "dummy",   "outlier"};
-constexpr std::array<std::string_view, 6> counted_stems{"includ", "inclus", "valid",
-                                                        "keep",   "usable", "accept"};
-
-bool is_practice_word(const std::string& word) {
-  return word == "prac" || begins_with_any(word, practice_stems);
-}
-
-// A cell that is one of the words, or begins with one.
-bool is_called_uncounted(const std::string& cell) {
-  const std::vector<std::string> words = words_of_name(cell);
-  if (words.empty()) {
-    return false;
-  }
-  const std::string read = as_read(cell);
-  const bool is_warm_up = words.size() > 1 && words[0] == "warm" && words[1] == "up";
-  return is_practice_word(words.front()) || is_warm_up || read == "survey preview" ||
-         read == "survey test" ||
-         (words.size() <= 2 && begins_with_any(words.front(), uncounted_stems));
-}
-}  // namespace
-
-bool says_uncounted(const std::string& column, const std::string& cell) {
-  const std::vector<std::string> words = words_of_name(column);
-  const bool is_of_practice = std::ranges::any_of(words, is_practice_word);
-  if (is_of_practice && column.ends_with(".thisN")) {
-    return !cell.empty();
-  }
-  const bool is_of_uncounted = std::ranges::any_of(
-      words, [](const std::string& word) { return begins_with_any(word, uncounted_stems); });
-  const bool is_of_counted = std::ranges::any_of(
-      words, [](const std::string& word) { return begins_with_any(word, counted_stems); });
-  const std::optional<bool> yes = right_or_wrong(cell);
-  return is_called_uncounted(cell) || ((is_of_practice || is_of_uncounted) && yes == true) ||
-         (is_of_counted && !is_of_uncounted && yes == false);
 }
 
 std::string to_text(const AnswerOrigin& origin) {

@@ -18,12 +18,6 @@ struct AnswerOrigin {
 std::string to_text(const AnswerOrigin& origin);
 using AnswerOrigins = std::vector<AnswerOrigin>;
 
-// Whether a row is practice, or not to be counted, by what stands in one of its columns: the word
-// itself ("practice", "entraînement", "warm-up", E-Prime's "PracProc", Qualtrics' "Survey Preview",
-// "catch", "excluded" …), yes in a column that is called after it, no in one that says what counts
-// ("include", "valid"), or the count of PsychoPy's loop of that name.
-bool says_uncounted(const std::string& column, const std::string& cell);
-
 // "1", "true", "correct" …, or the contrary; unset: says neither.
 std::optional<bool> right_or_wrong(const std::string& cell);
 

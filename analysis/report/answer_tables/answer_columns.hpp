@@ -64,7 +64,7 @@ bool is_share(const std::string& name);
 // Whether a column of that name may hold counts: "count_nonzero", "Anzahl", "0" and no name at all,
 // as pandas calls sizes of groups.
 bool may_be_counts(const std::string& name);
-// Whether it holds something else for certain: numbers of trials, times, …
+// Whether it is called after something else: numbers of trials, times, …
 bool is_no_count(const std::string& name);
 // "column 'n'", or by its place where it has no name.
 std::string described_column(const std::vector<std::string>& header, std::size_t place);

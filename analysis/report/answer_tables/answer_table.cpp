@@ -19,6 +19,7 @@
 #include "analysis/report/answer_tables/answer_checks.hpp"
 #include "analysis/report/answer_tables/answer_columns.hpp"
 #include "analysis/report/answer_tables/answer_weights.hpp"
+#include "analysis/report/answer_tables/column_words.hpp"
 #include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/answer_tables/foreign_text.hpp"
 #include "analysis/report/answer_tables/other_columns.hpp"
@@ -28,15 +29,11 @@ namespace tapstudy::analysis {
 namespace {
 // A misspelt name would be one more stimulus, or one more participant.
 void check_differ(const std::set<std::string>& names, const std::string& file) {
-  std::unordered_map<std::string, std::string> known;  // by what is read
-  for (const std::string& name : names) {
-    const auto [other, is_new] = known.emplace(as_read(name), name);
-    if (!is_new) {
-      throw core::InvalidInput{
-          fmt::format("{}: '{}' and '{}' read alike (they differ in case, spaces, dashes, zeros of "
-                      "numbers or how letters are composed): --merge-alike makes them one",
-                      file, other->second, name)};
-    }
+  if (const auto alike = first_alike({names.begin(), names.end()})) {
+    throw core::InvalidInput{
+        fmt::format("{}: '{}' and '{}' read alike (they differ in case, spaces, dashes, zeros of "
+                    "numbers or how letters are composed): --merge-alike makes them one",
+                    file, alike->first, alike->second)};
   }
 }
 }  // namespace
@@ -201,8 +198,12 @@ class AnswerReader {
   }
   void check_holds_no_practice(const std::vector<const CsvRow*>& rows, std::size_t column) const {
     const std::string& name = header()[column];
+    std::unordered_map<std::string_view, bool> known;  // by the cell
     const auto is_practice = [&](const CsvRow* row) {
-      return says_uncounted(name, row->cells[column]);
+      const std::string& cell = row->cells[column];
+      const auto [found, is_new] = known.try_emplace(cell, false);
+      found->second = is_new ? says_uncounted(name, cell) : found->second;
+      return found->second;
     };
     const auto practice = std::ranges::count_if(rows, is_practice);
     if (practice > 0 && practice < std::ssize(rows)) {

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <numeric>
 #include <span>
 #include <sstream>
@@ -23,6 +22,12 @@ constexpr std::int64_t max_answers = 1'000'000;
 
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
   throw core::InvalidInput{fmt::format("{}:{}: {}", file, line, what)};
+}
+
+std::vector<std::string> names_of(const std::vector<Item>& items) {
+  std::vector<std::string> names;
+  std::ranges::transform(items, std::back_inserter(names), &Item::name);
+  return names;
 }
 
 bool has_name(const std::vector<Item>& items, const std::string& name) {
@@ -146,8 +151,7 @@ std::vector<Item> responses_of(const CsvRow& header, std::size_t first,
 // Otherwise a misspelt name would be a stimulus that is never recognised.
 void check_is_named(const std::vector<Item>& stimuli, const std::vector<Item>& responses,
                     const std::vector<CsvRow>& lines, const std::string& file) {
-  std::vector<std::string> names;
-  std::ranges::transform(responses, std::back_inserter(names), &Item::name);
+  const std::vector<std::string> names = names_of(responses);
   for (std::size_t i = 0; i < stimuli.size(); ++i) {
     if (!has_name(responses, stimuli[i].name)) {
       refuse(file, lines[i + 1].line,
@@ -233,13 +237,10 @@ void check_are_answers(const ConfusionMatrix& matrix, const std::set<std::string
 }
 
 void check_differ(const std::vector<Item>& items, const std::string& file, int line) {
-  std::map<std::string, std::string> known;  // by what is read
-  for (const Item& item : items) {
-    const auto [other, is_new] = known.emplace(as_read(item.name), item.name);
-    if (!is_new) {
-      refuse(file, line,
-             fmt::format("'{}' and '{}' read alike: add up what is one", other->second, item.name));
-    }
+  if (const auto alike = first_alike(names_of(items))) {
+    refuse(
+        file, line,
+        fmt::format("'{}' and '{}' read alike: add up what is one", alike->first, alike->second));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <regex>
 #include <string_view>
+#include <unordered_map>
 
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -118,5 +119,17 @@ std::string as_read(const std::string& name) {
   std::string read{composed.get()};
   plain_characters(read);
   return without_idle_zeros(with_single_spaces(read));
+}
+
+std::optional<std::pair<std::string, std::string>> first_alike(
+    const std::vector<std::string>& names) {
+  std::unordered_map<std::string, std::string> known;  // by what is read
+  for (const std::string& name : names) {
+    const auto [other, is_new] = known.emplace(as_read(name), name);
+    if (!is_new) {
+      return std::pair{other->second, name};
+    }
+  }
+  return std::nullopt;
 }
 }  // namespace tapstudy::analysis

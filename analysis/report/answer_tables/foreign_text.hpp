@@ -1,5 +1,8 @@
 #pragma once
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 namespace tapstudy::analysis {
 // The bytes of a file as UTF-8. `encoding` is a name that iconv knows; empty: UTF-8, with or
 // without a byte order mark. A line "sep=;" before the header, as spreadsheets write it, becomes
@@ -11,4 +14,7 @@ std::string utf8_of(const std::string& bytes, const std::string& encoding, const
 // (no-break spaces included), how their letters are composed (Unicode, NFKC) and zeros before a
 // number.
 std::string as_read(const std::string& name);
+// The first two of the names that people would read as one.
+std::optional<std::pair<std::string, std::string>> first_alike(
+    const std::vector<std::string>& names);
 }  // namespace tapstudy::analysis

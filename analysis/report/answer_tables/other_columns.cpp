@@ -4,85 +4,34 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <functional>
 #include <map>
 #include <set>
 #include <string_view>
 #include <utility>
 
-#include "analysis/report/answer_tables/foreign_text.hpp"
+#include "analysis/report/answer_tables/column_words.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
-std::vector<std::string> words_of_name(const std::string& name) {
-  std::vector<std::string> words;
-  std::string word;
-  const auto end_word = [&] {
-    if (!word.empty()) {
-      words.push_back(as_read(word));
-      word.clear();
-    }
-  };
-  bool was_small = false;
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool is_of_word = byte >= 0x80 || std::isalnum(byte) != 0;
-    if (!is_of_word || (was_small && std::isupper(byte) != 0)) {
-      end_word();
-    }
-    if (is_of_word) {
-      word += c;
-    }
-    was_small = std::islower(byte) != 0;
-  }
-  end_word();
-  return words;
-}
-
-bool tells_runs(const std::string& name) {
-  constexpr std::array<std::string_view, 16> known{
-      "session", "sessionid", "sitzung",   "run",       "runid",   "visit",     "day",    "tag",
-      "date",    "datum",     "startdate", "timestamp", "logfile", "recording", "result", "fecha"};
-  return std::ranges::any_of(words_of_name(name), [&](const std::string& word) {
-    return std::ranges::find(known, word) != known.end();
-  });
-}
-
-bool looks_like_date(const std::string& cell) {
-  std::vector<std::size_t> lengths;  // of groups of digits that '-', '.' or '/' join, at the start
-  std::size_t digits = 0;
-  for (const char c : cell + " ") {
-    if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
-      ++digits;
-      continue;
-    }
-    lengths.push_back(std::exchange(digits, 0));
-    if (c != '-' && c != '.' && c != '/') {
-      break;
-    }
-  }
-  constexpr std::size_t parts = 3;
-  const auto is_short = [](std::size_t length) { return length == 1 || length == 2; };
-  return lengths.size() == parts && is_short(lengths[1]) &&
-         ((lengths[0] == 4 && is_short(lengths[2])) ||
-          (is_short(lengths[0]) && (lengths[2] == 4 || lengths[2] == 2)));
-}
-
 namespace {
 using results::AnswerRow;
-using Cells = std::vector<std::string>;
+using Cells = std::vector<std::string_view>;  // of the rows and answers that are checked
 
-// A column that is not read, and what else the same rows hold.
+// A column that is not read.
 struct OtherColumn {
-  std::string name;  // described_column()
-  Cells cells;
-  const AnswerOrigin* first{};
+  std::string name;                       // as the header has it
+  std::string description;                // described_column()
+  Cells cells;                            // one an answer
+  std::map<std::string_view, int> kinds;  // how often each value is there
 };
+// The answers of one file.
 struct FileAnswers {
-  std::vector<const AnswerRow*> answers;
   std::vector<const AnswerOrigin*> origins;
-  Cells given;  // as the file has them, before --responses
+  Cells participants;
+  Cells stimuli;
+  Cells responses;
+  std::set<std::string, std::less<>> given;  // responses as the file has them, before --responses
   std::vector<OtherColumn> columns;
-  std::vector<std::string> names;  // of the columns, as the header has them
   bool has_times{};
 };
 
@@ -90,56 +39,53 @@ struct FileAnswers {
   throw core::InvalidInput{fmt::format("{}: {}", to_text(at), what)};
 }
 
-FileAnswers answers_of(const OtherColumns& file, const std::vector<AnswerRow>& answers,
-                       const AnswerOrigins& origins) {
-  FileAnswers of;
-  const auto response =
-      static_cast<std::size_t>(std::ranges::find(file.header, file.response) - file.header.begin());
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    if (origins[i].csv == file.csv) {
-      of.answers.push_back(&answers[i]);
-      of.origins.push_back(&origins[i]);
-      of.given.push_back(only_answer_in(origins[i].row->cells[response]));
-    }
-  }
-  for (const std::size_t place : file.places) {
-    OtherColumn column{described_column(file.header, place), {}, nullptr};
-    for (const AnswerOrigin* origin : of.origins) {
-      column.cells.push_back(origin->row->cells[place]);
-    }
-    if (!column.cells.empty() && file.header[place] != file.weight) {
-      column.first = of.origins.front();
-      of.columns.push_back(std::move(column));
-      of.names.push_back(file.header[place]);
-    }
-  }
-  return of;
-}
-
-Cells field_of(const FileAnswers& of, std::string AnswerRow::*field) {
-  Cells cells;
-  for (const AnswerRow* answer : of.answers) {
-    cells.push_back(answer->*field);
-  }
-  return cells;
-}
-
-std::map<std::string, int> counted(const Cells& cells) {
-  std::map<std::string, int> counts;
-  for (const std::string& cell : cells) {
+std::map<std::string_view, int> counted(const Cells& cells) {
+  std::map<std::string_view, int> counts;
+  for (const std::string_view cell : cells) {
     ++counts[cell];
   }
   return counts;
 }
 
-bool are_missing_somewhere(const Cells& cells) {
-  return std::ranges::any_of(cells, is_missing);
+FileAnswers answers_of(const OtherColumns& file, const std::vector<AnswerRow>& answers,
+                       const AnswerOrigins& origins) {
+  FileAnswers of;
+  of.has_times = file.has_times;
+  const auto response =
+      static_cast<std::size_t>(std::ranges::find(file.header, file.response) - file.header.begin());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (origins[i].csv == file.csv) {
+      of.origins.push_back(&origins[i]);
+      of.participants.push_back(answers[i].participant_id);
+      of.stimuli.emplace_back(answers[i].stimulus);
+      of.responses.push_back(answers[i].response);
+      of.given.insert(only_answer_in(origins[i].row->cells[response]));
+    }
+  }
+  for (const std::size_t place : file.places) {
+    if (of.origins.empty() || file.header[place] == file.weight) {
+      continue;
+    }
+    Cells cells;
+    for (const AnswerOrigin* origin : of.origins) {
+      cells.push_back(origin->row->cells[place]);
+    }
+    of.columns.push_back(
+        {file.header[place], described_column(file.header, place), std::move(cells), {}});
+    of.columns.back().kinds = counted(of.columns.back().cells);
+  }
+  return of;
+}
+
+bool are_missing_somewhere(const OtherColumn& column) {
+  return std::ranges::any_of(column.kinds,
+                             [](const auto& kind) { return is_missing(std::string{kind.first}); });
 }
 
 // The value at each key; empty where one key has several.
 template <class Key>
-std::map<Key, std::string> function_of(const std::vector<Key>& keys, const Cells& cells) {
-  std::map<Key, std::string> values;
+std::map<Key, std::string_view> function_of(const std::vector<Key>& keys, const Cells& cells) {
+  std::map<Key, std::string_view> values;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (values.try_emplace(keys[i], cells[i]).first->second != cells[i]) {
       return {};
@@ -148,88 +94,91 @@ std::map<Key, std::string> function_of(const std::vector<Key>& keys, const Cells
   return values;
 }
 
-using Pair = std::pair<std::string, std::string>;  // stimulus and answer
-
-// The pairs at which the column has the value, if no stimulus and no answer is in two of them, and
-// there are two or more.
-std::set<Pair> one_to_one(const std::map<Pair, std::string>& values, const std::string& value) {
+using Pair = std::pair<std::string_view, std::string_view>;  // stimulus and answer
+// The pairs at which a column has a value.
+struct MarkedPairs {
+  std::string value;
   std::set<Pair> pairs;
-  std::set<std::string> stimuli;
-  std::set<std::string> answers;
-  for (const auto& [pair, at_pair] : values) {
-    if (at_pair == value) {
-      if (!stimuli.insert(pair.first).second || !answers.insert(pair.second).second) {
-        return {};
+  bool are_right() const {
+    return std::ranges::all_of(pairs, [](const Pair& pair) { return pair.first == pair.second; });
+  }
+};
+
+// Whether no stimulus and no answer is in two of the pairs, and there are two or more.
+bool are_one_to_one(const std::set<Pair>& pairs) {
+  std::set<std::string_view> stimuli;
+  std::set<std::string_view> answers;
+  for (const auto& [stimulus, answer] : pairs) {
+    stimuli.insert(stimulus);
+    answers.insert(answer);
+  }
+  return pairs.size() > 1 && stimuli.size() == pairs.size() && answers.size() == pairs.size();
+}
+
+// A column that has one of two values at one answer to each stimulus may say by it which are right.
+// Those of the two of which that is true.
+std::vector<MarkedPairs> marked_pairs(const FileAnswers& of, const OtherColumn& column) {
+  if (column.kinds.size() != 2 || are_missing_somewhere(column)) {
+    return {};
+  }
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < of.stimuli.size(); ++i) {
+    pairs.emplace_back(of.stimuli[i], of.responses[i]);
+  }
+  const auto values = function_of(pairs, column.cells);
+  if (values.empty() || pairs.size() < 2 * values.size() ||
+      !function_of(of.stimuli, column.cells).empty() ||
+      !function_of(of.responses, column.cells).empty()) {
+    return {};
+  }
+  std::vector<MarkedPairs> found;
+  for (const auto& [value, count] : column.kinds) {
+    MarkedPairs marked{std::string{value}, {}};
+    for (const auto& [pair, at_pair] : values) {
+      if (at_pair == value) {
+        marked.pairs.insert(pair);
       }
-      pairs.insert(pair);
+    }
+    if (are_one_to_one(marked.pairs)) {
+      found.push_back(std::move(marked));
     }
   }
-  return pairs.size() > 1 ? pairs : std::set<Pair>{};
+  return found;
 }
 
 bool says_errors(const std::string& name) {
   constexpr std::array<std::string_view, 9> stems{"err",  "wrong",  "incorr", "miss", "fehl",
                                                   "fals", "erreur", "faux",   "mist"};
-  return std::ranges::any_of(words_of_name(name), [&](const std::string& word) {
-    return std::ranges::any_of(stems,
-                               [&](std::string_view stem) { return word.starts_with(stem); });
-  });
+  return has_word_beginning(name, stems);
 }
 
-// By its values a column says which answers are right where it has one of two values at one answer
-// to each stimulus.
-void check_says_no_other_right(const FileAnswers& of, const OtherColumn& column,
-                               const std::string& name) {
-  const auto kinds = counted(column.cells);
-  if (kinds.size() != 2 || are_missing_somewhere(column.cells)) {
-    return;
-  }
-  std::vector<Pair> pairs;
-  for (const AnswerRow* answer : of.answers) {
-    pairs.emplace_back(answer->stimulus, answer->response);
-  }
-  const auto values = function_of(pairs, column.cells);
-  if (values.empty() || of.answers.size() < 2 * values.size() ||
-      !function_of(field_of(of, &AnswerRow::stimulus), column.cells).empty() ||
-      !function_of(field_of(of, &AnswerRow::response), column.cells).empty()) {
-    return;
-  }
-  const std::string& one = kinds.begin()->first;
-  const std::string& other = kinds.rbegin()->first;
-  const std::set<Pair> sets[]{one_to_one(values, one), one_to_one(values, other)};
-  const auto are_right = [](const std::set<Pair>& found) {
-    return !found.empty() &&
-           std::ranges::all_of(found, [](const Pair& pair) { return pair.first == pair.second; });
+void check_says_no_other_right(const FileAnswers& of, const OtherColumn& column) {
+  const std::vector<MarkedPairs> marked = marked_pairs(of, column);
+  const auto agrees = [&](const MarkedPairs& one) {
+    // of two stimuli and two answers also the wrong ones are one to each
+    const bool is_said_wrong =
+        marked.size() > 1 && !says_errors(column.name) && right_or_wrong(one.value) == false;
+    return one.are_right() && !is_said_wrong;
   };
-  // of two stimuli and two answers also the wrong ones are one to each
-  const auto is_called = [&](const std::string& value, bool right) {
-    return right_or_wrong(value) == right;
-  };
-  const bool is_contrary = !sets[0].empty() && !sets[1].empty() && !says_errors(name) &&
-                           ((are_right(sets[0]) && is_called(one, false)) ||
-                            (are_right(sets[1]) && is_called(other, false)));
-  const bool agrees = (are_right(sets[0]) || are_right(sets[1])) && !is_contrary;
-  if (agrees || (sets[0].empty() && sets[1].empty())) {
+  const auto other = std::ranges::find_if_not(marked, &MarkedPairs::are_right);
+  if (other == marked.end() || std::ranges::any_of(marked, agrees)) {
     return;
   }
-  const std::set<Pair>& marked =
-      sets[0].empty() || (is_contrary && are_right(sets[0])) ? sets[1] : sets[0];
-  ask(*column.first,
+  const auto& [stimulus, answer] = *other->pairs.begin();
+  ask(*of.origins.front(),
       fmt::format("{} is '{}' where '{}' was answered to '{}', and of one answer to each other "
                   "stimulus, as if these were the right ones, which the names do not say: say what "
                   "answers stand for by --responses GIVEN=STIMULUS, or --correct-column none",
-                  column.name, values.at(*marked.begin()), marked.begin()->second,
-                  marked.begin()->first));
+                  column.description, other->value, answer, stimulus));
 }
 
 // "corrAns": for each stimulus the answer that is right.
 void check_names_no_other_answer(const FileAnswers& of, const OtherColumn& column,
                                  const AnswerReading& reading) {
-  const auto values = function_of(field_of(of, &AnswerRow::stimulus), column.cells);
-  const std::set<std::string> given{of.given.begin(), of.given.end()};
-  std::set<std::string> named;
+  const auto values = function_of(of.stimuli, column.cells);
+  std::set<std::string_view> named;
   for (const auto& [stimulus, value] : values) {
-    if (is_missing(value) || !given.contains(value)) {
+    if (is_missing(std::string{value}) || !of.given.contains(value)) {
       return;
     }
     named.insert(value);
@@ -238,14 +187,15 @@ void check_names_no_other_answer(const FileAnswers& of, const OtherColumn& colum
     return;
   }
   for (const auto& [stimulus, value] : values) {
-    const auto meaning = reading.responses.find(value);
-    const std::string& stands_for = meaning == reading.responses.end() ? value : meaning->second;
+    const auto meaning = reading.responses.find(std::string{value});
+    const std::string_view stands_for =
+        meaning == reading.responses.end() ? value : std::string_view{meaning->second};
     if (stands_for != stimulus) {
-      ask(*column.first,
+      ask(*of.origins.front(),
           fmt::format("{} has the answer '{}' at every '{}', as if it were the right one, and it "
                       "stands for '{}': say what answers stand for by --responses GIVEN=STIMULUS, "
                       "or --correct-column none",
-                      column.name, value, stimulus, stands_for));
+                      column.description, value, stimulus, stands_for));
     }
   }
 }
@@ -262,41 +212,38 @@ bool is_called_after_people(const std::string& name) {
   constexpr std::array<std::string_view, 14> known{
       "id",     "sub",  "subj", "sujet", "user",           "code",     "ppt",
       "person", "name", "who",  "vp",    "versuchsperson", "initials", "sid"};
-  return std::ranges::any_of(words_of_name(name), [&](const std::string& word) {
-    return std::ranges::find(known, word) != known.end();
-  });
+  return has_word(name, known);
 }
 
 // Otherwise people who differ would be taken for one.
-void check_tells_no_people(const FileAnswers& of, const OtherColumn& column,
-                           const std::string& name) {
+void check_tells_no_people(const FileAnswers& of, const OtherColumn& column) {
   constexpr int fewest_rows = 3;  // of each value
-  const auto kinds = counted(column.cells);
+  const auto& kinds = column.kinds;
   const bool are_groups =
-      kinds.size() > 1 && !are_missing_somewhere(column.cells) &&
+      kinds.size() > 1 && !are_missing_somewhere(column) &&
       std::ranges::all_of(kinds, [](const auto& kind) { return kind.second >= fewest_rows; });
-  if (!are_groups || !function_of(field_of(of, &AnswerRow::stimulus), column.cells).empty() ||
-      !function_of(field_of(of, &AnswerRow::response), column.cells).empty()) {
+  if (!are_groups || !function_of(of.stimuli, column.cells).empty() ||
+      !function_of(of.responses, column.cells).empty()) {
     return;
   }
   const bool is_in_a_row = changes_in(column.cells) < 2 * kinds.size();
-  if (is_in_a_row || is_called_after_people(name)) {
-    ask(*column.first,
+  if (is_in_a_row || is_called_after_people(column.name)) {
+    ask(*of.origins.front(),
         fmt::format(
             "{0} may say whose answers these are ({1} values, each in {2} rows or more): "
             "--participant-column '{3}', or --participant-column {4} if nothing does",
-            column.name, kinds.size(),
+            column.description, kinds.size(),
             std::ranges::min_element(kinds, {}, [](const auto& kind) { return kind.second; })
                 ->second,
-            name, no_column));
+            column.name, no_column));
   }
 }
 
 // The rows of each participant, in their order.
-std::map<std::string, std::vector<std::size_t>> rows_of_people(const FileAnswers& of) {
-  std::map<std::string, std::vector<std::size_t>> people;
-  for (std::size_t i = 0; i < of.answers.size(); ++i) {
-    people[of.answers[i]->participant_id].push_back(i);
+std::map<std::string_view, std::vector<std::size_t>> rows_of_people(const FileAnswers& of) {
+  std::map<std::string_view, std::vector<std::size_t>> people;
+  for (std::size_t i = 0; i < of.participants.size(); ++i) {
+    people[of.participants[i]].push_back(i);
   }
   return people;
 }
@@ -317,25 +264,26 @@ bool counts_anew(const std::string& name) {
   constexpr std::array<std::string_view, 12> stems{"block", "loop",  "rep",  "part",
                                                    "list",  "cycle", "task", "cond",
                                                    "phase", "sess",  "run",  "set"};
-  return std::ranges::any_of(words_of_name(name), [&](const std::string& word) {
-    return std::ranges::any_of(stems,
-                               [&](std::string_view stem) { return word.starts_with(stem); });
-  });
+  return has_word_beginning(name, stems);
 }
 
-// Two rows of one participant with the same number, whatever column of those that count anew.
+// Two rows of one participant with the same number, in whatever columns that count anew.
 std::optional<std::pair<std::size_t, std::size_t>> same_number(const FileAnswers& of,
-                                                               const Cells& numbers) {
-  std::map<std::vector<std::string>, std::size_t> known;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    std::vector<std::string> key{of.answers[i]->participant_id, numbers[i]};
-    for (std::size_t column = 0; column < of.columns.size(); ++column) {
-      if (counts_anew(of.names[column])) {
-        key.push_back(of.columns[column].cells[i]);
-      }
+                                                               const OtherColumn& numbers) {
+  std::vector<const OtherColumn*> within;
+  for (const OtherColumn& column : of.columns) {
+    if (counts_anew(column.name)) {
+      within.push_back(&column);
+    }
+  }
+  std::map<Cells, std::size_t> known;
+  for (std::size_t i = 0; i < numbers.cells.size(); ++i) {
+    Cells key{of.participants[i], numbers.cells[i]};
+    for (const OtherColumn* column : within) {
+      key.push_back(column->cells[i]);
     }
     const auto [other, is_new] = known.emplace(std::move(key), i);
-    if (!is_new && !is_missing(numbers[i])) {
+    if (!is_new && !is_missing(std::string{numbers.cells[i]})) {
       return std::pair{other->second, i};
     }
   }
@@ -343,16 +291,16 @@ std::optional<std::pair<std::size_t, std::size_t>> same_number(const FileAnswers
 }
 
 void check_has_each_trial_once(const FileAnswers& of) {
-  for (std::size_t column = 0; column < of.columns.size(); ++column) {
-    if (!numbers_trials(of.names[column])) {
+  for (const OtherColumn& column : of.columns) {
+    if (!numbers_trials(column.name)) {
       continue;
     }
-    if (const auto twice = same_number(of, of.columns[column].cells)) {
+    if (const auto twice = same_number(of, column)) {
       ask(*of.origins[twice->second],
           fmt::format("{} is '{}' here and at line {} of the same participant, as where a run was "
                       "begun anew or a question asked again: leave all but one out (--where "
                       "COLUMN=VALUE, or in the file), or count all by --pool-runs",
-                      of.columns[column].name, of.columns[column].cells[twice->second],
+                      column.description, column.cells[twice->second],
                       of.origins[twice->first]->row->line));
     }
   }
@@ -378,18 +326,20 @@ void check_has_each_row_once(const FileAnswers& of) {
   }
 }
 
-bool are_numbers(const FileAnswers& of, const Cells& cells) {
-  return std::ranges::all_of(cells, [&](const std::string& cell) {
-    return of.origins.front()->csv->text.number(cell).has_value();
+bool are_numbers(const FileAnswers& of, const OtherColumn& column) {
+  return std::ranges::all_of(column.kinds, [&](const auto& kind) {
+    return of.origins.front()->csv->text.number(std::string{kind.first}).has_value();
   });
 }
 
 // The text at the first answers of each participant, if it stands nowhere else, and at fewer than
 // three in ten.
-std::optional<std::string> text_of_beginnings(const FileAnswers& of, const Cells& cells) {
+std::optional<std::string> text_of_beginnings(const FileAnswers& of, const OtherColumn& column) {
   constexpr double most = 0.3;
-  const std::string& text = cells.front();
-  if (is_missing(text) || are_numbers(of, cells) || counted(cells).size() > 4) {
+  constexpr std::size_t most_kinds = 4;
+  const Cells& cells = column.cells;
+  const std::string text{cells.front()};
+  if (is_missing(text) || column.kinds.size() > most_kinds || are_numbers(of, column)) {
     return std::nullopt;
   }
   for (const auto& [person, rows] : rows_of_people(of)) {
@@ -404,14 +354,13 @@ std::optional<std::string> text_of_beginnings(const FileAnswers& of, const Cells
   return text;
 }
 
-void check_begins_not_with_practice(const FileAnswers& of, const OtherColumn& column,
-                                    const std::string& name) {
-  if (const auto text = text_of_beginnings(of, column.cells)) {
-    ask(*column.first,
+void check_begins_not_with_practice(const FileAnswers& of, const OtherColumn& column) {
+  if (const auto text = text_of_beginnings(of, column)) {
+    ask(*of.origins.front(),
         fmt::format("{0} is '{1}' at the first answers of each participant and never later, as "
                     "practice may be called: leave them out (--where '{2}!={1}'), or "
                     "--count-practice",
-                    column.name, *text, name));
+                    column.description, *text, column.name));
   }
 }
 }  // namespace
@@ -420,18 +369,17 @@ void check_other_columns(const std::vector<OtherColumns>& files,
                          const std::vector<AnswerRow>& answers, const AnswerOrigins& origins,
                          const AnswerReading& reading, bool are_participants_known) {
   for (const OtherColumns& file : files) {
-    FileAnswers of = answers_of(file, answers, origins);
-    of.has_times = file.has_times;
-    for (std::size_t i = 0; i < of.columns.size(); ++i) {
+    const FileAnswers of = answers_of(file, answers, origins);
+    for (const OtherColumn& column : of.columns) {
       if (reading.columns.correct.empty()) {
-        check_says_no_other_right(of, of.columns[i], of.names[i]);
-        check_names_no_other_answer(of, of.columns[i], reading);
+        check_says_no_other_right(of, column);
+        check_names_no_other_answer(of, column, reading);
       }
       if (!are_participants_known && reading.columns.participant.empty()) {
-        check_tells_no_people(of, of.columns[i], of.names[i]);
+        check_tells_no_people(of, column);
       }
       if (!reading.counts_practice) {
-        check_begins_not_with_practice(of, of.columns[i], of.names[i]);
+        check_begins_not_with_practice(of, column);
       }
     }
     if (!reading.pools_runs && are_participants_known && !is_counted_already(answers)) {

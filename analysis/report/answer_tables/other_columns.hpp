@@ -4,15 +4,6 @@
 
 #include "analysis/report/answer_tables/answer_weights.hpp"
 namespace tapstudy::analysis {
-// The words of a column's name or of a cell, in small letters: "isPracticeTrial" has three.
-std::vector<std::string> words_of_name(const std::string& name);
-
-// Whether a column of that name tells runs of one participant apart: "sessionID", "Datum", "visit".
-bool tells_runs(const std::string& name);
-
-// "2026-11-02", "02.11.26 14:05": another one with each run, whatever the column is called.
-bool looks_like_date(const std::string& cell);
-
 // What columns say by their values, whatever they are called, so that to leave them aside would
 // change a number. Throws InvalidInput that says which option decides:
 // - two values of which one stands at one answer to each stimulus, as if these were right, and at

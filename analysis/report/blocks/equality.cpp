@@ -117,9 +117,6 @@ double value_at(const VariedAxis& axis, double level) {
 Interval values_at(const VariedAxis& axis, const Interval& levels) {
   return {value_at(axis, levels.low), value_at(axis, levels.high)};
 }
-double from_log(double log) {
-  return std::pow(10.0, log);
-}
 
 std::vector<Column> estimate_columns() {
   return {interval_column("PSE (95 % CI)", "equality"),

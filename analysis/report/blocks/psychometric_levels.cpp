@@ -35,6 +35,10 @@ std::optional<double> comparison_level(const BlockDesign& design,
   return to_nine_digits(design.axis->level_of(value->second));
 }
 
+double from_log(double log) {
+  return std::pow(10.0, log);
+}
+
 void count_at(std::vector<Level>& levels, double level, bool is_success) {
   auto at = std::ranges::lower_bound(levels, level, {}, &Level::value);
   if (at == levels.end() || at->value != level) {

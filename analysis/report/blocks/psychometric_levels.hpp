@@ -15,6 +15,9 @@ namespace tapstudy::analysis {
 // beside a standard. Throws InvalidInput if it has no value on the axis.
 std::optional<double> comparison_level(const BlockDesign& design, const results::AnswerRow& answer);
 
+// Of thresholds, whose means are of decadic logarithms.
+double from_log(double log);
+
 // One answer more at this level. Levels from low to high.
 void count_at(std::vector<Level>& levels, double level, bool is_success);
 

@@ -366,10 +366,6 @@ std::vector<CitingText> threshold_remarks(const BlockDesign& design,
 }
 
 namespace {
-double of_log10(double log) {
-  return std::pow(10.0, log);
-}
-
 // In place of a mean that would leave people out: of a normal distribution of the logarithms, of
 // whom some are known to lie beyond the levels. Unset where its interval has an open end.
 std::optional<MainResult> with_those_beyond(MainResult result, const ThresholdResults& results) {
@@ -387,8 +383,8 @@ std::optional<MainResult> with_those_beyond(MainResult result, const ThresholdRe
   if (!std::isfinite(found.interval.low) || !std::isfinite(found.interval.high)) {
     return std::nullopt;
   }
-  result.estimate = of_log10(found.mean);
-  result.range = {of_log10(found.interval.low), of_log10(found.interval.high)};
+  result.estimate = from_log(found.mean);
+  result.range = {from_log(found.interval.low), from_log(found.interval.high)};
   result.people = static_cast<int>(logarithms.size());
   return result;
 }
@@ -413,9 +409,9 @@ std::optional<MainResult> mean_threshold(const VariedAxis& axis, const Threshold
   if (results.leaves_out_people()) {
     return with_those_beyond(mean, results);
   }
-  mean.estimate = of_log10(results.mean_log->mean);
-  mean.range = {of_log10(results.mean_log->interval.low),
-                of_log10(results.mean_log->interval.high)};
+  mean.estimate = from_log(results.mean_log->mean);
+  mean.range = {from_log(results.mean_log->interval.low),
+                from_log(results.mean_log->interval.high)};
   mean.people = results.mean_log->participants;
   return mean;
 }

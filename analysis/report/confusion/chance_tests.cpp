@@ -136,11 +136,12 @@ ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatr
 }
 
 std::optional<double> chance_p_of(const IdentifyingParticipant& person, const BlockDesign& design,
-                                  const IdentificationData& data, const Draws& wanted) {
+                                  const IdentificationData& data) {
   const IdentificationData own{data.stimuli, data.responses, {person}};
   ConfusionMatrix matrix{data.stimuli, data.responses};
   matrix.counts = counts_of(data, person);
-  const ChanceTests tests = chance_tests(randomisation_of(design, own), matrix, {}, wanted);
+  const ChanceTests tests =
+      chance_tests(randomisation_of(design, own), matrix, {}, Draws{draws_of_a_participant});
   return tests.accuracy ? std::optional{tests.accuracy->p} : std::nullopt;
 }
 }  // namespace tapstudy::analysis

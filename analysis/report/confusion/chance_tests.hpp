@@ -46,5 +46,5 @@ inline constexpr int draws_of_a_participant = 999;
 // One participant's accuracy, tested likewise by that participant's answers alone, so that habits
 // are no sign of feeling anything; unset where nothing was randomised, or answered.
 std::optional<double> chance_p_of(const IdentifyingParticipant& person, const BlockDesign& design,
-                                  const IdentificationData& data, const Draws& wanted);
+                                  const IdentificationData& data);
 }  // namespace tapstudy::analysis

@@ -149,7 +149,7 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
     ConfusionMatrix own = matrix;
     own.counts = counts_of(data, person);
     participants.push_back({person.id, overall_accuracy(own),
-                            chance_p_of(person, design, data, Draws{draws_of_a_participant})});
+                            chance_p_of(person, design, data)});
   }
   add_over_participants(counted, *this);
   personal = shares_right(*this);

@@ -148,8 +148,7 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
   for (const IdentifyingParticipant& person : data.participants) {
     ConfusionMatrix own = matrix;
     own.counts = counts_of(data, person);
-    participants.push_back({person.id, overall_accuracy(own),
-                            chance_p_of(person, design, data)});
+    participants.push_back({person.id, overall_accuracy(own), chance_p_of(person, design, data)});
   }
   add_over_participants(counted, *this);
   personal = shares_right(*this);

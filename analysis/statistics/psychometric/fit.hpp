@@ -3,28 +3,8 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/statistics/psychometric/likelihood.hpp"
+#include "analysis/statistics/psychometric/climb.hpp"
 namespace tapstudy::analysis {
-// low = high holds a parameter fixed.
-struct PsychometricBox {
-  PsychometricVector low;
-  PsychometricVector high;
-};
-
-struct Maximum {
-  PsychometricVector at;
-  double log_likelihood{};
-};
-
-// A local maximum of the likelihood within the box, from a start in it: Fisher scoring with
-// Levenberg's damping, until a step gains less of the log-likelihood; parameters at a bound that
-// the score points out of rest.
-Maximum local_maximum(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                      const PsychometricVector& start, double smallest_gain = 1e-12);
-// The same to ten digits, by its score: a likelihood is so flat there that its values tell seven.
-Maximum refined(const BinomialLikelihood& likelihood, const PsychometricBox& box,
-                const Maximum& rough);
-
 // The model that is fitted. A rate with low = high is fixed, others are free within [low, high].
 struct PsychometricModel {
   core::PsychometricShape shape{};
@@ -72,31 +52,4 @@ BinomialLikelihood likelihood_of(const PsychometricModel& model, const std::vect
 // The box that fit_psychometric searches: thresholds up to three times the levels' range beyond
 // them, slopes from nearly constant to a step within the smallest gap.
 PsychometricBox search_box(const PsychometricModel& model, const std::vector<Level>& levels);
-
-// The greatest maximum of a likelihood in a box, climbed to from a grid of starts, at the likeliest
-// position for each slope and lapse rate: each may have a maximum of its own. The grid depends on
-// the values of the levels alone, and is kept for other answers at them.
-class MaximumSearch {
- public:
-  MaximumSearch(const BinomialLikelihood& likelihood, const PsychometricBox& box);
-  // likelihood: of the same levels, whatever the answers. Further starts lie in the box.
-  Maximum maximum(const BinomialLikelihood& likelihood,
-                  const std::vector<PsychometricVector>& further_starts = {}) const;
-  // Whether the maximum is greater than that; ends with the first one that is.
-  bool is_exceeded(const BinomialLikelihood& likelihood, double log_likelihood,
-                   const PsychometricVector& start) const;
-
- private:
-  void add(const PsychometricVector& at, const BinomialLikelihood& likelihood,
-           const std::vector<double>& shape_values);
-  std::vector<PsychometricVector> starts(const BinomialLikelihood& likelihood) const;
-  Maximum rough_maximum(const BinomialLikelihood& likelihood,
-                        const std::vector<PsychometricVector>& further_starts, double enough) const;
-
-  PsychometricBox box_;
-  std::vector<PsychometricVector> points_;
-  Eigen::Index in_a_group_{};    // points of one slope and lapse rate
-  Eigen::MatrixXd log_success_;  // of each point, for each level
-  Eigen::MatrixXd log_failure_;
-};
 }  // namespace tapstudy::analysis

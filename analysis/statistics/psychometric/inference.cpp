@@ -11,6 +11,7 @@
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/numerics.hpp"
 #include "analysis/statistics/psychometric/likelihood.hpp"
+#include "analysis/statistics/psychometric/maximum_search.hpp"
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
 namespace tapstudy::analysis {

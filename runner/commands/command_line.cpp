@@ -244,6 +244,9 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_simulate(line);
   add_merge(line);
   add_report(line);
+  add_push(line);
+  add_pull(line);
+  add_schedule(line);
   add_export(line);
   add_amend(line);
   add_redact(line);

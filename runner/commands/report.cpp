@@ -16,6 +16,7 @@
 #include "core/error.hpp"
 #include "core/files/output_files.hpp"
 #include "core/files/scratch_directory.hpp"
+#include "results/server/pull.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/studies/mixed_models/fit_in_r.hpp"
@@ -42,6 +43,7 @@ struct ReportOptions {
   std::string out;
   std::string mode;
   std::string only;
+  std::string study;
   bool replace{false};
   bool shows_all{false};
 };
@@ -76,6 +78,23 @@ Summary summary_of_stores(const ReportOptions& options, const std::vector<std::s
   }
   return summary_of_study(studies, mode_of(options, sessions), Detail::all, only,
                           fit_mixed_models_in_r);
+}
+
+bool is_of_server(const ReportOptions& options) {
+  return std::ranges::any_of(options.directories, results::ServerConnection::is_url);
+}
+
+// Of all sites of a study on a server.
+Summary summary_of_server(const ReportOptions& options, const std::vector<std::string>& only) {
+  results::ServerConnection server{options.directories.front()};
+  const core::ScratchDirectory scratch;
+  std::vector<std::string> directories;
+  for (const results::ServedStore& store : results::stores_of_study(server, options.study)) {
+    directories.push_back((fs::path{scratch.path()} / results::name_of_directory(store)).string());
+    core::make_directories(directories.back());
+    results::pull_store(store, server, directories.back());
+  }
+  return summary_of_stores(options, directories, only);
 }
 
 // Shares of one simulation make together what one run would have stored.
@@ -182,6 +201,9 @@ Summary summary_of_comparison(const ReportOptions& options) {
 
 Summary summary_of(const ReportOptions& options) {
   const std::vector<std::string> only = split_row(options.only, "--only");
+  if (is_of_server(options)) {
+    return summary_of_server(options, only);
+  }
   if (!options.directories.empty()) {
     return summary_of_directories(options, options.directories, only);
   }
@@ -207,6 +229,13 @@ void check_options(const ReportOptions& options) {
         "options with columns, --where, --responses, --order, --weights, --encoding, "
         "--merge-alike, --pool-runs, --count-practice, --are-counts and --rows say how to read "
         "--counts FILE.csv"};
+  }
+  if (is_of_server(options) && (options.directories.size() > 1 || options.out.empty())) {
+    throw core::InvalidInput{
+        "a report of a server is of all that it has of one study, and needs --out"};
+  }
+  if (!options.study.empty() && !is_of_server(options)) {
+    throw core::InvalidInput{"--study: says which study of a server is meant"};
   }
   if (options.directories.size() > 1 && options.out.empty()) {
     throw core::InvalidInput{"--out: a report of several directories needs one of its own"};
@@ -284,7 +313,10 @@ void add_report(CommandParser& line) {
       line.add("report", "Confusion matrix and statistics: terminal, HTML, JSON and CSV");
   const auto options = std::make_shared<ReportOptions>();
   command.arguments("directories", options->directories,
-                    "Directory of a study; several, if it was run on several machines");
+                    "Directory of a study; several, if it was run on several machines; or the "
+                    "server that has them (postgresql://USER@HOST/DATABASE)");
+  command.option("--study", options->study,
+                 "Of a server: title, or how the SHA-256 of the protocol begins");
   command.list("--counts", options->counts,
                "Instead of a study: a matrix, or tables with a row for each answer (CSV, also "
                "PsychoPy's and jsPsych's)");

@@ -1,4 +1,5 @@
-// The JSON schemas of the YAML files and the reference of their keys, made from the readers.
+// The JSON schemas of the YAML files and the reference of their keys, made from the readers, and
+// the SQL of a server's tables, made from the store's.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 
 #include "core/files/output_files.hpp"
 #include "protocols/reader/read_protocol.hpp"
+#include "results/server/mirrored_tables.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/commands/key_reference.hpp"
 #include "runner/session/devices/rigs.hpp"
@@ -43,13 +45,18 @@ void write_key_documents(const std::string& directory) {
 void add_schema(CommandParser& line) {
   std::vector<std::string> names;
   std::ranges::transform(key_documents(), std::back_inserter(names), &KeyDocument::name);
+  const std::string server = "postgresql";
+  names.push_back(server);
   auto name = std::make_shared<std::string>();
   Command command = line.add(
       "schema", "Print the JSON schema of a kind of YAML file, or what all their keys mean");
   command.one_of("kind", *name, names,
-                 "JSON schema of this kind of file; reference: every key of all, in Markdown");
-  command.on_run([name] {
-    fmt::print("{}", std::ranges::find(key_documents(), *name, &KeyDocument::name)->text());
+                 "JSON schema of this kind of file; reference: every key of all, in Markdown; "
+                 "postgresql: the SQL of a server's tables (push)");
+  command.on_run([name, server] {
+    fmt::print("{}", *name == server
+                         ? results::server_schema_sql()
+                         : std::ranges::find(key_documents(), *name, &KeyDocument::name)->text());
   });
 }
 }  // namespace tapstudy::runner

@@ -1,0 +1,39 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "results/store/sqlite.hpp"
+namespace tapstudy::results {
+enum class ColumnType { integer, real, text, bytes };
+
+struct MirroredColumn {
+  std::string name;
+  ColumnType type{};
+};
+
+// A table of a store as a server has it: the same columns after `store_id`, the server's number of
+// the store, and `row_id`, SQLite's of the row. Rows of a store are added, never changed, so that
+// their numbers say which ones the server has.
+struct MirroredTable {
+  std::string name;
+  std::vector<MirroredColumn> columns;
+  bool has_own_id{};  // a column is SQLite's number of the row
+
+  std::string column_list() const;  // comma-separated
+  std::string select() const;       // the number, then the columns, in the order of the numbers
+};
+
+// All tables of a store of this version, those that refer to others after them.
+const std::vector<MirroredTable>& mirrored_tables();
+
+// The SQL that makes a server's tables and the two roles that use them, for its administrator.
+std::string server_schema_sql();
+
+// A row of `select` as a line of PostgreSQL's COPY, without the store's number, with a line end.
+std::string copy_line(const MirroredTable& table, Statement& row);
+// The same line, bound in its order. Throws StoreError if it is none of the table's.
+void bind_copy_line(const MirroredTable& table, std::string_view line, Statement& insert);
+// The rows up to the last one, as one text: the SHA-256 of the text of those before and its line.
+std::string hash_after(const std::string& hash_before, const std::string& line);
+}  // namespace tapstudy::results

@@ -1,0 +1,38 @@
+#include <cstdlib>
+
+#include "support/built_paths.hpp"
+#include "support/catch.hpp"
+#include "support/processes.hpp"
+#include "support/texts.hpp"
+using namespace tapstudy;
+
+// A server is started for each, and people's sessions are simulated.
+namespace {
+void run_sites(const std::string& test) {
+  setenv("TAPSTUDY_PROGRAM", testing::tapstudy_program().c_str(), 1);
+  const auto result = testing::run_program(
+      {"/usr/bin/python3", "-B", testing::source("tests/sites/sites_test.py"), test});
+  INFO(result.standard_error);
+  CHECK(result.exit_code == 0);
+}
+}  // namespace
+
+TEST_CASE(
+    "a push that is cut off, or whose server is killed, shows nothing, loses nothing and ends",
+    "[end_to_end][postgresql]") {
+  run_sites("cut");
+}
+
+TEST_CASE("a server's report of two sites that push at once is that of their directories",
+          "[end_to_end][postgresql]") {
+  run_sites("report");
+}
+
+TEST_CASE("no two participants of any site are given the same row", "[end_to_end][postgresql]") {
+  run_sites("rows");
+}
+
+TEST_CASE("a server's roles, certificate and earlier rows refuse what is not theirs",
+          "[end_to_end][postgresql]") {
+  run_sites("refused");
+}

@@ -83,6 +83,32 @@ std::string joined_by(char separator, const std::vector<std::string>& cells, std
   return line;
 }
 
+bool is_time(const std::string& name) {
+  return seconds_per_unit(name) > 0.0;
+}
+
+// A row of units below the names: "s,m/s^2", "(ms),(g)".
+bool are_units(const std::vector<std::string>& cells) {
+  return std::ranges::any_of(
+      cells, [](const std::string& cell) { return !cell.empty() && is_time("t " + cell); });
+}
+
+// The names, and with that of the time its unit; unset if there are not as many as units.
+std::optional<std::vector<std::string>> names_above(std::string_view line,
+                                                    const std::vector<std::string>& units,
+                                                    char separator) {
+  std::vector<std::string> names = cells_of(line, separator);
+  if (names.size() != units.size() || is_comment(line) || std::ranges::none_of(names, is_time)) {
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (is_time(names[i]) && is_time(names[i] + " " + units[i])) {
+      names[i] += " " + units[i];
+    }
+  }
+  return names;
+}
+
 // The header as the rows' cells ask for it; unset if the line above them is none.
 std::optional<std::string> header_above(const std::vector<std::string_view>& lines,
                                         const FirstNumbers& first) {
@@ -92,10 +118,12 @@ std::optional<std::string> header_above(const std::vector<std::string_view>& lin
   std::string_view line = lines[first.line - 1];
   const bool is_commented = is_comment(line);
   line.remove_prefix(is_commented ? 1 : 0);
-  const std::vector<std::string> cells = cells_of(line, first.separator);
+  std::vector<std::string> cells = cells_of(line, first.separator);
   const bool fits = is_commented ? cells.size() == first.cells : cells.size() >= first.cells;
-  const bool names_time = std::ranges::any_of(
-      cells, [](const std::string& cell) { return seconds_per_unit(cell) > 0.0; });
+  if (!is_commented && first.line > 1 && are_units(cells)) {
+    cells = names_above(lines[first.line - 2], cells, first.separator).value_or(cells);
+  }
+  const bool names_time = std::ranges::any_of(cells, is_time);
   if (!fits || (is_commented && !names_time)) {
     return std::nullopt;
   }

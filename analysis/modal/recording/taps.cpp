@@ -107,7 +107,10 @@ class TapFinder {
     const auto railed_end = std::ranges::lower_bound(rails_, last);
     if (railed_end != rails_.begin() && *(railed_end - 1) >= onset) {
       begin = std::max(begin, *(railed_end - 1) + 1);
-      remark(impact.onset, "clipped, its decay is taken from the last sample at the limit on",
+      remark(impact.onset,
+             "clipped: its decay is taken from the last sample at the limit on, and no decaying "
+             "sinusoid "
+             "is fitted to it",
              fmt::format("at {:.4f} s", static_cast<double>(begin) / recording_.rate_hz));
     }
     return begin;
@@ -225,6 +228,23 @@ Resting resting(const Recording& recording) {
   const double value = quantile(recording.samples, 0.5);
   return {value,
           std::sqrt(energies_of(without(value, recording.samples), recording.rate_hz).floor)};
+}
+
+bool shows(const Tap& tap, const Recording& recording, const Resting& at_rest) {
+  constexpr double tenfold = 10.0;
+  const std::size_t frame = frame_of(recording.rate_hz);
+  const double least = tenfold * at_rest.noise_rms * at_rest.noise_rms;
+  for (std::size_t begin = tap.onset; begin + frame <= tap.end; begin += frame) {
+    double energy = 0.0;
+    for (std::size_t i = begin; i < begin + frame; ++i) {
+      const double value = recording.samples[i] - at_rest.value;
+      energy += value * value / static_cast<double>(frame);
+    }
+    if (energy >= least) {
+      return true;
+    }
+  }
+  return false;
 }
 
 namespace {

@@ -60,6 +60,9 @@ struct Resting {
   double noise_rms{};
 };
 Resting resting(const Recording& recording);
+// Whether a channel shows what another one tells to be a tap: a frame of it has ten times the
+// energy of the channel's noise, as of every impact that is found.
+bool shows(const Tap& tap, const Recording& recording, const Resting& at_rest);
 
 // Sample numbers where the sensor was at its limit: runs of three and more samples at the largest
 // or smallest value of all into which the signal does not run smoothly (next to it, it moves by

@@ -66,6 +66,22 @@ bool is_dead(const Eigen::VectorXd& samples) {
   return samples.maxCoeff() - samples.minCoeff() <= 1e-12 * most;
 }
 
+// What is known of a channel, whatever the tap.
+struct ChannelState {
+  analysis::Resting at_rest;
+  std::vector<std::size_t> rails;  // see rail_samples
+
+  bool is_clipped_in(const analysis::Tap& tap) const {
+    const auto next = std::ranges::lower_bound(rails, tap.onset);
+    return next != rails.end() && *next < tap.end;
+  }
+};
+
+ChannelState state_of(const analysis::Recording& recording) {
+  const analysis::Resting at_rest = analysis::resting(recording);
+  return {at_rest, analysis::rail_samples(recording.samples, at_rest.noise_rms)};
+}
+
 class Identifier {
  public:
   Identifier(const TapQuestion& question, Progress& progress) : hook_{progress.hook()} {
@@ -123,8 +139,8 @@ class Identifier {
     for (const analysis::TapRemark& remark : found.remarks) {
       tap_remarks_.add(file.channels.front().file, remark);
     }
-    std::vector<analysis::Resting> resting;  // of each channel
-    std::ranges::transform(file.channels, std::back_inserter(resting), analysis::resting);
+    std::vector<ChannelState> states;
+    std::ranges::transform(file.channels, std::back_inserter(states), state_of);
     std::size_t rests_from = 0;
     for (const analysis::Tap& tap : found.taps) {
       hook_(fmt::format("tap {} of {}", tap.impact, file.channels.front().file));
@@ -133,7 +149,7 @@ class Identifier {
         tap_remarks_.add(file.force->file, {force->centre_s, "the force is clipped", {}});
       }
       for (std::size_t i = 0; i < file.channels.size(); ++i) {
-        if (add(file.channels[i], resting[i], tap)) {
+        if (add(file.channels[i], states[i], tap)) {
           result_.taps.back().impact = before + tap.impact;
           result_.taps.back().force = force;
           result_.taps.back().rest = rest_before(file.channels[i], rests_from, tap.onset);
@@ -156,24 +172,33 @@ class Identifier {
   }
 
   // A channel that shows nothing is left out with a remark.
-  bool add(const analysis::Recording& recording, const analysis::Resting& resting,
+  bool add(const analysis::Recording& recording, const ChannelState& state,
            const analysis::Tap& tap) {
     IdentifiedTap one;
     one.file = recording.file;
     one.channel = recording.channel;
     one.tap = tap;
     one.time_s = static_cast<double>(tap.onset) / recording.rate_hz;
-    one.noise_rms = resting.noise_rms;
+    one.noise_rms = state.at_rest.noise_rms;
+    one.is_clipped = state.is_clipped_in(tap);
     one.decay = between(recording, tap.begin, tap.end);
     if (is_dead(one.decay.samples)) {
       tap_remarks_.add(recording.file,
                        {one.time_s, fmt::format("{} does not change", recording.channel), {}});
       return false;
     }
+    if (!analysis::shows(tap, recording, state.at_rest)) {
+      tap_remarks_.add(
+          recording.file,
+          {one.time_s,
+           fmt::format("{} shows nothing above its noise, and is left out", recording.channel),
+           {}});
+      return false;
+    }
     one.decay.samples.array() -= one.decay.samples.mean();
     // not by its mean: what stopped has been accelerated
     one.whole = between(recording, tap.onset, tap.end);
-    one.whole.samples.array() -= resting.value;
+    one.whole.samples.array() -= state.at_rest.value;
     result_.taps.push_back(std::move(one));
     return true;
   }
@@ -192,8 +217,10 @@ class Identifier {
       throw core::InvalidInput{fmt::format("{}", fmt::join(result_.remarks, "\n"))};
     }
     for (IdentifiedTap& tap : result_.taps) {
-      tap.sinusoid = analysis::fit_decaying_sinusoid(
-          tap.whole, band_of_sinusoid(result_.band, tap.whole.rate_hz));
+      if (!tap.is_clipped) {  // it is fitted from the impact on, where they are
+        tap.sinusoid = analysis::fit_decaying_sinusoid(
+            tap.whole, band_of_sinusoid(result_.band, tap.whole.rate_hz));
+      }
     }
   }
 
@@ -277,10 +304,10 @@ class Identifier {
     result_.sinusoid = sinusoid_law(
         result_, protocol_ ? std::optional{protocol_->rendering.finger} : std::nullopt);
     if (!result_.sinusoid) {
-      result_.remarks.push_back(
-          fmt::format("no tap is mostly one decaying sinusoid (it would have to explain {:.0f} % "
-                      "of its energy)",
-                      100.0 * min_explained_by_sinusoid));
+      result_.remarks.push_back(fmt::format(
+          "no tap that is not clipped is mostly one decaying sinusoid (it would have to "
+          "explain {:.0f} % of its energy)",
+          100.0 * min_explained_by_sinusoid));
     }
     if (protocol_) {
       result_.model = compared_with_model();

@@ -43,11 +43,12 @@ struct IdentifiedTap {
   int impact{};               // over all recordings, from 1; the same in all channels
   double time_s{};            // of the impact
   double noise_rms{};         // of the recording
+  bool is_clipped{};          // somewhere from the impact on
   analysis::FreeDecay decay;  // in the recording's unit, about its mean
   analysis::FreeDecay whole;  // from the impact on
   analysis::FreeDecay rest;   // before the impact, since the tap before; may be empty
   analysis::TapModes modes;
-  std::optional<analysis::FittedSinusoid> sinusoid;
+  std::optional<analysis::FittedSinusoid> sinusoid;  // none of clipped ones
   std::optional<double> speed_m_s;
   std::optional<ImpactForce> force;  // where it was recorded
   std::optional<std::size_t> place;  // that was tapped: index into TapIdentification::places_m

@@ -61,6 +61,9 @@ TEST_CASE("a table of an instrument is a recording whatever stands above its num
       "Zeit [s];acc\n" + with_decimal_commas(rows_of(";", 1.0)),
       "timestamp_us,acc\n" + rows_of(",", 1e6),
       "x-axis,1\nsecond,Volt\n" + rows_of(",", 1.0),
+      "Time,Acceleration\ns,m/s^2\n" + rows_of(",", 1.0),
+      "Run 3\n\nTime\tAcceleration\n(ms)\t(g)\n" + rows_of("\t", 1000.0),
+      "Zeit (ms);Beschleunigung\nms;g\n" + with_decimal_commas(rows_of(";", 1000.0)),
       "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\nDelta_X\t0,0005\n"
       "***End_of_Header***\t\nX_Value\tAcc\tComment\n" +
           with_decimal_commas(rows_of("\t", 1.0)),

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/random/rng.hpp"
 #include "runner/laboratory/identify/fits_over_taps.hpp"
 #include "runner/laboratory/identify/modal_report.hpp"
 #include "support/catch.hpp"
@@ -48,6 +50,58 @@ TEST_CASE("a sensor that shows nothing is left out with a remark, and the others
   CHECK(found.taps.size() == 3);
   REQUIRE(found.remarks.size() == 1);  // one a kind
   CHECK_THAT(found.remarks.front(), Contains("3 of 3 taps: dead does not change"));
+}
+
+TEST_CASE("sensors that show noise or hum alone are left out, and tell no taps",
+          "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.csv";
+  const analysis::Recording live = testing::planted_recording(
+      {{{62.0, 0.03}}, {{118.0, 0.02}}}, {0.4, 1.7, 3.0}, 3000.0, 4.3, 0.01, 5);
+  core::Rng rng{6};
+  std::string text = "noise,hum,live\n";
+  for (std::size_t i = 0; i < live.samples.size(); ++i) {
+    const double hum =
+        0.05 * std::sin(2.0 * std::numbers::pi * 50.0 * static_cast<double>(i) / 3000.0);
+    text += fmt::format("{:.7g},{:.7g},{:.7g}\n", 0.01 * rng.normal(), hum + 0.001 * rng.normal(),
+                        live.samples[i]);
+  }
+  testing::write(file, text);
+  const runner::TapIdentification found = identified(file, {"noise", "hum", "live"});
+  CHECK(found.agreed.size() == 2);
+  CHECK(found.taps.size() == 3);
+  REQUIRE(found.remarks.size() == 2);
+  CHECK_THAT(found.remarks.front(),
+             Contains("3 of 3 taps: noise shows nothing above its noise, and is left out"));
+}
+
+// The oracle is what was planted. Clipped, the beginning looks as if it decayed less.
+TEST_CASE("the decaying sinusoid is fitted to taps that are not clipped, and to no others",
+          "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.csv";
+  const analysis::Pole planted{62.0, 0.03};
+  const analysis::Recording strong =
+      testing::planted_recording({{planted}}, {0.4}, 3000.0, 4.3, 0.0, 5);
+  const analysis::Recording weak =
+      testing::planted_recording({{planted}}, {1.7, 3.0}, 3000.0, 4.3, 0.001, 5);
+  const double most_of_weak = *std::ranges::max_element(weak.samples);
+  const auto clipped_at = [&](double limit) {
+    std::string text = "live\n";
+    for (std::size_t i = 0; i < weak.samples.size(); ++i) {
+      const double sample = 3.0 * strong.samples[i] + weak.samples[i];
+      text += fmt::format("{:.7g}\n", std::clamp(sample, -limit, limit));
+    }
+    testing::write(file, text);
+    return identified(file, {"live"});
+  };
+  const double decay_per_s = planted.damping_ratio * 2.0 * std::numbers::pi * planted.frequency_hz;
+  const runner::TapIdentification some = clipped_at(1.1 * most_of_weak);
+  REQUIRE(some.sinusoid);
+  CHECK(some.sinusoid->decay_per_s.value == Approx(decay_per_s).epsilon(0.01));
+  const runner::TapIdentification all = clipped_at(0.5 * most_of_weak);
+  CHECK_FALSE(all.sinusoid);
+  CHECK(all.agreed.size() == 1);
 }
 
 TEST_CASE("one channel named in two ways is refused", "[runner][identify]") {

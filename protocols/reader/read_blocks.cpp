@@ -25,14 +25,25 @@ std::string as_it_reads(const std::string& label) {
 }
 }  // namespace
 
-void check_labels_differ(MapReader& block_reader, const Protocol& protocol, const Block& block) {
+std::optional<std::string> why_not_told_apart(const std::vector<Option>& options) {
   std::map<std::string, std::string> name_of_label;
-  for (const Option& option : block.task->answers(block, protocol).options) {
-    const auto [known, is_new] = name_of_label.emplace(as_it_reads(option.label), option.name);
+  for (const Option& option : options) {
+    const std::string read = as_it_reads(option.label);
+    const auto [known, is_new] = name_of_label.emplace(read, option.name);
     if (!is_new) {
-      block_reader.reject(fmt::format("the answers '{}' and '{}' have the same label, '{}'",
-                                      known->second, option.name, option.label));
+      return fmt::format("the answers '{}' and '{}' have the same label, '{}'", known->second,
+                         option.name, option.label);
     }
+    if (read.empty()) {
+      return fmt::format("the answer '{}' has a label of blanks", option.name);
+    }
+  }
+  return std::nullopt;
+}
+
+void check_labels_differ(MapReader& block_reader, const Protocol& protocol, const Block& block) {
+  if (const auto why = why_not_told_apart(block.task->answers(block, protocol).options)) {
+    block_reader.reject(*why);
   }
 }
 

@@ -114,6 +114,9 @@ void read_options(MapReader& reader, FormItem& item) {
                                            option, between_choices));
     }
   }
+  if (const auto why = why_not_told_apart(item.options)) {
+    reader.reject("options", *why);
+  }
   reader.check("options", item.options.size() >= 2, R"({"minItems": 2})",
                "a choice has at least two options");
 }
@@ -126,6 +129,10 @@ void read_ending(MapReader& reader, FormItem& item) {
          "answers after which the participant takes no part: the session ends, and of this form "
          "nothing but that answer is stored; unset: none"},
         "answer", known_answers(item), std::vector<std::string>{});
+    const std::set<std::string> ending{item.ends_session.begin(), item.ends_session.end()};
+    if (!ending.empty() && ending.size() == known_answers(item).size()) {
+      reader.reject("ends_session", "names every answer: nobody could take part");
+    }
   }
 }
 

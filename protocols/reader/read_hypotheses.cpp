@@ -246,7 +246,9 @@ void read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
         "stimulus of the block", block != nullptr ? block->stimuli : stimulus_names(protocol),
         fits ? std::nullopt : std::optional<std::string>{""});
   }
-  if (block != nullptr) {
+  if (block != nullptr && block->is_practice) {
+    reader.reject("block", "is practice, which no report tests");
+  } else if (block != nullptr) {
     check_fits_task(reader, protocol, hypothesis, *block);
   }
   protocol.hypotheses.push_back(std::move(hypothesis));

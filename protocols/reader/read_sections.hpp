@@ -54,7 +54,8 @@ void read_between_trials(MapReader& block_reader, Block& block);
 ExploreLimits read_explore(MapReader& block_reader, const Protocol& protocol, Presented presented);
 // Of a block that is otherwise without problems.
 void check_intervals(MapReader& block_reader, const Block& block);
-// Two answers that read alike cannot be told apart by who gives them.
+// Two answers that read alike cannot be told apart by who gives them. Unset: they can.
+std::optional<std::string> why_not_told_apart(const std::vector<Option>& options);
 void check_labels_differ(MapReader& block_reader, const Protocol& protocol, const Block& block);
 // Where as much is right by guessing, answers do not depend on the level, and a staircase wanders.
 void check_targets(MapReader& block_reader, const Protocol& protocol, const Block& block);

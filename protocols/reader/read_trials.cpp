@@ -85,6 +85,11 @@ ExploreLimits read_explore(MapReader& block, const Protocol& protocol, Presented
           if (*limits.max_seconds <= limits.min_seconds) {
             reader.reject("max_seconds", "is not above min_seconds");
           }
+          constexpr double most_a_second = 10.0;  // of taps by one hand
+          if (limits.min_contacts > most_a_second * *limits.max_seconds) {
+            reader.reject("max_seconds", fmt::format("is too short: nobody taps {} times in {:g} s",
+                                                     limits.min_contacts, *limits.max_seconds));
+          }
         }
         limits.at_limit = reader.one_of<AtLimit>(
             {"at_limit",

@@ -121,7 +121,8 @@ void Problems::throw_if_any() const {
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& allowed) {
   const auto closest = std::ranges::min_element(
       allowed, {}, [&](const std::string& candidate) { return edit_distance(word, candidate); });
-  if (closest == allowed.end() || edit_distance(word, *closest) > 1 + word.size() / 4) {
+  const auto most = std::min(1 + word.size() / 4, word.empty() ? 0 : word.size() - 1);
+  if (closest == allowed.end() || edit_distance(word, *closest) > most) {
     return "";
   }
   return fmt::format(", did you mean '{}'?", *closest);

@@ -303,6 +303,15 @@ void MapReader::check_count(const std::string& key, const std::vector<std::strin
 }
 
 void MapReader::reject_unknown(const YAML::Node& node, const std::string& key) {
+  if (key == "<<") {
+    reject_at(node, path_of(key),
+              "merges of mappings are not read: the keys are written out, or `*name` stands for a "
+              "whole value");
+    for (const std::string& merged : known_) {
+      problems_->withdraw_missing(path_of(merged));
+    }
+    return;
+  }
   std::vector<std::string> allowed = known_;
   std::ranges::copy_if(looked_for_, std::back_inserter(allowed), [&](const std::string& other) {
     return std::ranges::find(allowed, other) == allowed.end();

@@ -240,7 +240,8 @@ std::string hint_for_number(const YAML::Node& node) {
   const std::string number_text = text.substr(0, text.size() - rest.size());
   const auto unit =
       static_cast<unsigned char>(rest[std::min(rest.find_first_not_of(' '), rest.size() - 1)]);
-  const bool is_unit = std::isalpha(unit) != 0 || unit == '%' || unit >= 0x80;
+  // 0b10 is a number in other languages, and nothing has a unit
+  const bool is_unit = (std::isalpha(unit) != 0 || unit == '%' || unit >= 0x80) && number != 0.0;
   return is_unit ? fmt::format(" (the key states the unit: write {})", number_text) : "";
 }
 }  // namespace

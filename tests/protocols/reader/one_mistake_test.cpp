@@ -59,7 +59,14 @@ TEST_CASE("one mistake in a protocol is one problem", "[protocols][problems]") {
       {"size_m: [0.6, 0.6, 0.05]", "size_m: [60cm, 0.6, 0.05]", "size_m[0]: '60cm' is not a num"},
       {"steps: 5", "steps: five", "blocks[1].steps: 'five' is not a whole number"},
       {"repetitions: 3", "repetitions: 3x", "blocks[0].repetitions: '3x' is not a whole number"},
+      {"repetitions: 3", "repetitions: 0b10",
+       "blocks[0].repetitions: '0b10' is not a whole number"},
+      {"repetitions: 3", "explore: {min_contacts: 30, max_seconds: 1}",
+       "explore.max_seconds: is too short: nobody taps 30 times in 1 s"},
       // keys
+      {"plate: two, material: heavy,", "<<: {plate: two}, material: heavy,",
+       "stimuli.other.<<: merges of mappings are not read"},
+      {"keys: [f, j]", "keys: [f, J]", "blocks[0].keys[1]: 'J' is not a known letter (one of"},
       {"blocks:\n", "block:\n", "block: is not a known key"},
       {"task: identification", "tusk: identification", "tusk: is not a known key"},
       {"steps: 5, low: low", "steps: 5, lov: low", "lov: is not a known key"},
@@ -67,6 +74,18 @@ TEST_CASE("one mistake in a protocol is one problem", "[protocols][problems]") {
       {"damping: {alpha_per_s", "damping: {ratio: 0.1, alpha_per_s",
        "damping.alpha_per_s: stands beside ratio: one of them says it"},
       {"keys: [f, j]", "keys: [f, f]", "blocks[0].keys[1]: 'f' is listed twice"},
+      {"task: rating, question", "task: rating, practice: true, question",
+       "hypotheses[0].block: is practice, which no report tests"},
+      {"hypotheses:\n",
+       "forms_before: [f]\nforms: {f: {title: F, items: [{name: a, kind: single_choice, question: "
+       "Q, "
+       "options: [x, ' X']}]}}\nhypotheses:\n",
+       "options: the answers 'x' and ' X' have the same label"},
+      {"hypotheses:\n",
+       "forms_before: [f]\nforms: {f: {title: F, items: [{name: a, kind: single_choice, question: "
+       "Q, "
+       "options: [x, y], ends_session: [y, x]}]}}\nhypotheses:\n",
+       "ends_session: names every answer: nobody could take part"},
       // words that decide which keys there are
       {"task: rating", "task: ratting", "blocks[1].task: 'ratting' is not a known task"},
       {"claim: rated_highest", "claim: rated_best", "hypotheses[0].claim: 'rated_best' is not"},
@@ -81,6 +100,7 @@ TEST_CASE("one mistake in a protocol is one problem", "[protocols][problems]") {
   const std::string answer = answer_to(replaced(study, from, to));
   CAPTURE(to, answer);
   CHECK_THAT(answer, Contains(said));
+  CHECK_THAT(answer, !Contains("write 0)"));
   CHECK(std::count(answer.begin(), answer.end(), '\n') == 0);
 }
 

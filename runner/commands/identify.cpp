@@ -17,6 +17,7 @@ namespace {
 struct IdentifyOptions {
   TapQuestion question;
   std::string quantity{"acceleration"};
+  double scale{};  // 0: not given
   std::string response;
   std::string band;
   std::string at;
@@ -113,6 +114,9 @@ ResponseQuestion response_question_of(const IdentifyOptions& options) {
 TapQuestion question_of(const IdentifyOptions& options) {
   TapQuestion question = options.question;
   question.quantity = analysis::quantity_from(options.quantity);
+  if (options.scale > 0.0) {
+    question.scale = options.scale;
+  }
   if (!options.band.empty()) {
     question.band = band_from(options.band);
   }
@@ -224,8 +228,9 @@ void add_identify(CommandParser& line) {
                  "Channel of what struck, N: impulses for --places");
   command.one_of("--quantity", options->quantity, {"acceleration", "velocity", "displacement"},
                  "What was measured; default: acceleration");
-  command.number_within("--scale", question.si_per_unit, 1e-12, 1e12,
-                        "SI units (m/s2, m/s, m) per unit of the recordings");
+  command.number_within("--scale", options->scale, 1e-12, 1e12,
+                        "SI units (m/s2, m/s, m) per unit of the recordings, where these are "
+                        "others");
   command.option(
       "--band", options->band,
       "LOW:HIGH in Hz; default: 10 to the highest peak of the recordings, or the protocol's "

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
 
@@ -90,6 +91,26 @@ double Energies::of_group(std::size_t first) const {
          static_cast<double>(count);
 }
 
+namespace {
+// Energies of groups of frames. Where all samples of one are the same, no sensor recorded: editors
+// and triggered recorders pad so. It has no noise, and is left out unless there is nothing else.
+std::vector<double> energies_of_groups(const Energies& energies,
+                                       const std::vector<double>& centred) {
+  std::vector<double> recorded;
+  std::vector<double> all;
+  for (std::size_t i = 0; i < energies.of_frame.size(); i += frames_per_group) {
+    all.push_back(energies.of_group(i));
+    const auto begin = centred.begin() + static_cast<std::ptrdiff_t>(i * energies.frame);
+    const auto length = static_cast<std::ptrdiff_t>(frames_per_group * energies.frame);
+    const auto end = begin + std::min(length, centred.end() - begin);
+    if (std::adjacent_find(begin, end, std::not_equal_to<>{}) != end) {
+      recorded.push_back(all.back());
+    }
+  }
+  return recorded.empty() ? all : recorded;
+}
+}  // namespace
+
 Energies energies_of(const std::vector<double>& centred, double rate_hz) {
   Energies energies{frame_of(rate_hz), {}, {}, 0.0};
   for (std::size_t i = 0; i + energies.frame <= centred.size(); i += energies.frame) {
@@ -100,12 +121,8 @@ Energies energies_of(const std::vector<double>& centred, double rate_hz) {
     energies.of_frame.push_back(sum / static_cast<double>(energies.frame));
   }
   energies.innovations = innovation_energies(centred, rate_hz, energies.frame);
-  std::vector<double> groups;
-  for (std::size_t i = 0; i < energies.of_frame.size(); i += frames_per_group) {
-    groups.push_back(energies.of_group(i));
-  }
   const double loudest = *std::ranges::max_element(energies.of_frame);
-  energies.floor = std::max(quantile(groups, 0.2), 1e-12 * loudest);
+  energies.floor = std::max(quantile(energies_of_groups(energies, centred), 0.2), 1e-12 * loudest);
   return energies;
 }
 

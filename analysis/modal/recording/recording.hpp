@@ -18,7 +18,9 @@ struct Recording {
   double rate_hz{};
   std::vector<double> samples;       // in the file's unit; of sound, 1 is full scale
   std::vector<std::string> remarks;  // sentences: what was noticed while reading
+  std::string unit{};  // of the samples, where the file states it apart from the channel
 };
+inline constexpr const char* full_scale = "full scale";  // the unit of sound
 
 struct ReadingOptions {
   double rate_hz{0.0};      // where the file states none; 0: it must

@@ -12,11 +12,6 @@
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
-namespace {
-constexpr double highest_rate_hz = 1e7;        // as of --rate
-constexpr double max_rate_difference = 0.001;  // more is a mistake, not rounded times
-
-// The micro sign, and the Greek letter mu.
 std::string with_ascii_micro(const std::string& text) {
   std::string ascii;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -26,6 +21,10 @@ std::string with_ascii_micro(const std::string& text) {
   }
   return ascii;
 }
+
+namespace {
+constexpr double highest_rate_hz = 1e7;        // as of --rate
+constexpr double max_rate_difference = 0.001;  // more is a mistake, not rounded times
 
 // In lower case; everything but letters becomes blanks.
 std::string letters_of(const std::string& name) {

@@ -9,6 +9,8 @@ namespace tapstudy::analysis {
 // Seconds per unit of what a time column or variable is called: "t", "time_us", "Time (ms)",
 // "Zeit [s]", "timestamp_us", "X_Value", "second" ...; 0: that is not the name of a time.
 double seconds_per_unit(const std::string& name);
+// The micro sign and the Greek letter mu as u.
+std::string with_ascii_micro(const std::string& text);
 
 // The rate of the even times nearest to these (least squares) [1 / their unit]. place(i) begins the
 // message about one of them, "file:line" or "file". Throws InvalidInput for times that do not

@@ -138,11 +138,9 @@ Recording read_sound_file(const std::string& file, const ReadingOptions& options
         fmt::format("{}: has {} samples (at most {})", file, info.frames, max_frames)};
   }
   const int channel = channel_from(options.column, info.channels, file);
-  Recording recording{file,
-                      fmt::format("channel {}", channel + 1),
-                      0.0,
-                      samples_of(sound.get(), info, channel),
-                      {}};
+  Recording recording{file, fmt::format("channel {}", channel + 1),
+                      0.0,  samples_of(sound.get(), info, channel),
+                      {},   full_scale};
   recording.rate_hz =
       agreed_rate(static_cast<double>(info.samplerate), options, file, "says", recording.remarks);
   if (std::string missing = told_of_missing(file, info.frames, recording.samples.size());

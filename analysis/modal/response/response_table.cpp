@@ -85,6 +85,7 @@ class ResponseTable {
     if (all.empty()) {
       refuse_table(file_, 1, "has no response beside frequency_hz");
     }
+    refuse_radians();
     return all;
   }
 
@@ -123,11 +124,31 @@ class ResponseTable {
         if (!number || !std::isfinite(*number)) {
           refuse_table(file_, cells.line, fmt::format("'{}' is not a number", cells.cells[i]));
         }
+        if (columns_[i].part == Part::magnitude && *number < 0.0) {
+          refuse_table(
+              file_, cells.line,
+              fmt::format("a magnitude is not below 0, as {} is (decibels are converted to "
+                          "magnitudes first: 10^(dB/20))",
+                          cells.cells[i]));
+        }
         columns_[i].values.push_back(*number);
       }
     }
     frequencies_ = columns_[frequency_].values;
     columns_.erase(columns_.begin() + static_cast<std::ptrdiff_t>(frequency_));
+  }
+
+  // Across a resonance the phase turns by 180 degrees.
+  void refuse_radians() const {
+    constexpr double most = 3.15;  // a little above pi
+    for (const Column& column : columns_) {
+      const auto [least, greatest] = std::ranges::minmax(column.values);
+      if (column.part == Part::phase && -most <= least && greatest <= most && least < greatest) {
+        refuse_table(file_, 1,
+                     fmt::format("all of '{} phase_deg' is within {} degrees, as radians would be",
+                                 column.response, most));
+      }
+    }
   }
 
   static Part other_part(Part part) {

@@ -83,7 +83,8 @@ void add_amplitudes(const TapIdentification& found, const std::map<int, Fits>& f
   for (const auto& [impact, channels] : fits) {
     if (channels.front()->speed_m_s) {
       speeds.push_back(*channels.front()->speed_m_s);
-      amplitudes.push_back(channels.front()->sinusoid->amplitude * found.question.si_per_unit);
+      amplitudes.push_back(channels.front()->sinusoid->amplitude *
+                           found.question.scale.value_or(1.0));
     }
   }
   if (!speeds.empty()) {

@@ -303,7 +303,7 @@ std::string samples_of(const Eigen::VectorXd& samples, double newtons_per_unit) 
 }  // namespace
 
 std::string playback_of(const TapIdentification& found, double finger_kg) {
-  const double newtons_per_unit = finger_kg * found.question.si_per_unit;
+  const double newtons_per_unit = finger_kg * found.question.scale.value_or(1.0);
   std::string text = fmt::format(
       "# tapstudy identify: {} taps as the forces that give the protocol's finger the recorded\n"
       "# accelerations, those of a fingertip or stylus; of a sensor on the plate they are too "

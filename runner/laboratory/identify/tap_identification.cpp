@@ -9,6 +9,7 @@
 
 #include "analysis/modal/modes/mode_kinds.hpp"
 #include "analysis/modal/modes/mode_shapes.hpp"
+#include "analysis/modal/recording/measured_unit.hpp"
 #include "core/error.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "runner/laboratory/identify/fits_over_taps.hpp"
@@ -100,6 +101,7 @@ class Identifier {
       files.push_back(read_measured_file(file, result_.question));
     }
     check_playback_rate(files);
+    check_units(files);
     check_band(result_.question, rate_of(*std::ranges::min_element(files, {}, rate_of)));
     for (const MeasuredFile& file : files) {
       add_remarks_of(file);
@@ -123,6 +125,20 @@ class Identifier {
             fmt::format("--at: {} has {:g} samples a second, {} {:g}: all of one rate",
                         file.channels.front().file, rate_of(file),
                         files.front().channels.front().file, rate_of(files.front()))};
+      }
+    }
+  }
+  // Amplitudes are of impact speeds alone; frequencies and damping have no unit of the sensor's.
+  void check_units(const std::vector<MeasuredFile>& files) const {
+    if (result_.question.speeds.empty() || result_.question.scale) {
+      return;
+    }
+    for (const MeasuredFile& file : files) {
+      for (const analysis::Recording& channel : file.channels) {
+        const std::string why = analysis::why_not_si(channel, result_.question.quantity);
+        if (!why.empty()) {
+          throw core::InvalidInput{why};
+        }
       }
     }
   }

@@ -19,7 +19,7 @@ struct TapQuestion {
   std::vector<std::string> columns;  // of each recording, as ReadingOptions::column; empty: one
   std::string force_column;          // of what struck [N], likewise; may be empty
   analysis::Quantity quantity{analysis::Quantity::acceleration};
-  double si_per_unit{1.0};  // from the recordings' unit to m/s², m/s or m
+  std::optional<double> scale;  // SI units in one of the recordings'; unset: they are in SI units
   analysis::TapFinding finding;
   std::optional<analysis::Band> band;  // unset: it follows the recording
   std::string speeds;  // CSV with a column speed_m_s, a row for each tap; may be empty

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "analysis/modal/recording/instrument_table.hpp"
+#include "analysis/modal/recording/measured_unit.hpp"
 #include "analysis/modal/recording/recording.hpp"
 #include "core/error.hpp"
 #include "support/catch.hpp"
@@ -93,6 +94,36 @@ TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused wit
       "t,acc\n" + rows_of(",", 1.0), fmt::format("\n0.002,{:.9g}", sample_at(4)), "\n0.002,nan");
   CHECK_THROWS_WITH(read_text(gap, given),
                     Contains("taps.csv:6:") && Contains("a sample is missing"));
+}
+
+TEST_CASE("a channel's unit is SI, or --scale or --quantity is asked for",
+          "[analysis][recordings][formats]") {
+  struct Stated {
+    const char* channel;
+    Quantity quantity;
+    const char* asked;
+  };
+  // 9.80665 m/s² is standard gravity by definition
+  const auto [channel, quantity, asked] = GENERATE(values<Stated>({
+      {"Acc (g)", Quantity::acceleration, "--scale 9.80665"},
+      {"acc_g", Quantity::acceleration, "--scale 9.80665"},
+      {"Beschleunigung [mm/s\u00b2]", Quantity::acceleration, "--scale 0.001"},
+      {"laser [\u00b5m]", Quantity::displacement, "--scale 1e-06"},
+      {"velocity_mm_s", Quantity::velocity, "--scale 0.001"},
+      {"velocity_mm_s", Quantity::acceleration, "no acceleration (--quantity velocity)"},
+      {"Voltage (mV)", Quantity::acceleration, "--scale says what one is"},
+      {"Acc (m/s^2)", Quantity::acceleration, ""},
+      {"acc_m_s2", Quantity::acceleration, ""},
+      {"acc", Quantity::acceleration, ""},
+      {"thing", Quantity::acceleration, ""},
+      {"Acc (left)", Quantity::acceleration, ""},
+  }));
+  CAPTURE(channel);
+  const std::string why = why_not_si({"a.csv", channel, 1000.0, {}, {}}, quantity);
+  CHECK(why.empty() == std::string{asked}.empty());
+  CHECK_THAT(why, Contains(asked));
+  CHECK_THAT(why_not_si({"a.wav", "channel 1", 1000.0, {}, {}, full_scale}, quantity),
+             Contains("full scale"));
 }
 
 TEST_CASE("a rate given beside another one is refused, or taken and said if it is to be trusted",

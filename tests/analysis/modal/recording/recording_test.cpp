@@ -221,6 +221,25 @@ TEST_CASE("noise and hum hold no tap, in words", "[analysis][recordings]") {
   CHECK_THROWS_WITH(find_taps(recording, {}), Contains("holds no tap"));
 }
 
+TEST_CASE("samples that are all the same before and after the taps change nothing of them",
+          "[analysis][recordings]") {
+  const Recording recording =
+      testing::planted_recording(plate, {0.5, 1.5, 2.5}, 4000.0, 3.5, 0.001, 4);
+  const FoundTaps alone = find_taps(recording, {});
+  constexpr std::size_t silent = 40000;
+  Recording padded = recording;
+  padded.samples.insert(padded.samples.begin(), silent, 0.0);
+  padded.samples.insert(padded.samples.end(), 5 * silent, 0.0);
+  const FoundTaps found = find_taps(padded, {});
+  REQUIRE(found.taps.size() == alone.taps.size());
+  CHECK(found.impacts == alone.impacts);
+  CHECK(found.remarks.size() == alone.remarks.size());
+  for (std::size_t i = 0; i < found.taps.size(); ++i) {
+    CHECK(found.taps[i].onset == alone.taps[i].onset + silent);
+    CHECK(found.taps[i].begin == alone.taps[i].begin + silent);
+  }
+}
+
 TEST_CASE("a decay begins after the last sample at the sensor's limit", "[analysis][recordings]") {
   Recording recording = testing::planted_recording(plate, {0.5}, 4000.0, 2.0, 0.001, 4);
   CHECK(rail_samples(recording.samples, 0.0).empty());

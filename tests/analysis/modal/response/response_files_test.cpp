@@ -54,7 +54,9 @@ std::string binary_function(const FrequencyResponses& responses, Eigen::Index co
 }
 
 // "real" and "imag", or "magnitude" and "phase_deg".
-std::string table_of(const FrequencyResponses& responses, bool is_polar) {
+constexpr double degrees = 180.0 / std::numbers::pi;
+std::string table_of(const FrequencyResponses& responses, bool is_polar,
+                     double phase_unit = degrees, double sign = 1.0) {
   std::string text = "frequency_hz";
   for (const ResponsePair& pair : responses.pairs) {
     text += is_polar ? fmt::format(",{0}_magnitude,{0}_phase_deg", name(pair))
@@ -64,8 +66,8 @@ std::string table_of(const FrequencyResponses& responses, bool is_polar) {
   for (Eigen::Index line = 0; line < responses.frequency_hz.size(); ++line) {
     text += fmt::format("{:.6g}", responses.frequency_hz[line]);
     for (const std::complex<double>& value : responses.values.row(line)) {
-      text += is_polar ? fmt::format(",{:.9g},{:.9g}", std::abs(value),
-                                     std::arg(value) * 180.0 / std::numbers::pi)
+      text += is_polar ? fmt::format(",{:.9g},{:.9g}", sign * std::abs(value),
+                                     std::arg(value) * phase_unit)
                        : fmt::format(",{:.9g},{:.9g}", value.real(), value.imag());
     }
     text += "\n";
@@ -199,6 +201,10 @@ TEST_CASE("responses that cannot be told are refused in one sentence",
       {{"a.csv", changed(table, "2+Z/1+Z imag", "2+Z/1+Z phase_deg")},
        "has no column '2+Z/1+Z imag'"},
       {{"a.csv", changed(table, "2+Z/1+Z imag", "coherence")}, "'coherence' is no header"},
+      {{"a.csv", table_of(planted, true, 1.0)}, "as radians would be", planted.kind},
+      {{"a.csv", table_of(planted, true, degrees, -1.0)},
+       "a magnitude is not below 0",
+       planted.kind},
       {{"a.csv", changed(table, "\n20,", "\n18,")}, "do not ascend", planted.kind},
       {{"a.csv", changed(table, "\n20,", "\n20,nan,")}, "a.csv:12:", planted.kind}};
   for (const Refused& refused : all) {

@@ -313,7 +313,10 @@ mount -o remount,ro "$1" || exit 70
   const auto result = testing::run_program({"/usr/bin/unshare", "-rm", "/bin/sh", "-c", script,
                                             "sh", disk.path(), testing::tapstudy_program(),
                                             paper("reality_vibration.yaml"), directory / "said"});
-  const auto lines = csv_rows(testing::contents(directory / "said"));
+  auto lines = csv_rows(testing::contents(directory / "said"));
+  std::erase_if(lines, [](const auto& line) {  // progress, of a machine that is busy
+    return line[0].starts_with("tapstudy: ");
+  });
   REQUIRE(lines.size() == 5);
   CHECK_THAT(lines[0][0], Contains("Read-only file system"));
   CHECK(lines[1][0] == "5");

@@ -84,7 +84,7 @@ const std::vector<AnswerFormat>& formats() {
        {"response"},
        usual_participants(),
        {"response_time_s"},
-       1.0,
+       0.0,  // each program has its own
        {"correct", "is_correct", "iscorrect", "accuracy", "acc", "corr"},
        {"date", "session", "session_id", "run", "run_id", run_of_file}}};
   return table;
@@ -177,7 +177,9 @@ double unit_in(std::string_view name, double otherwise) {
       return 1e-3;
     }
   }
-  return name.ends_with("_s") ? 1.0 : otherwise;
+  const bool is_in_seconds = std::ranges::any_of(
+      std::array{"_s", "(s)", "[s]"}, [&](const char* end) { return name.ends_with(end); });
+  return is_in_seconds ? 1.0 : otherwise;
 }
 }  // namespace
 
@@ -312,6 +314,11 @@ AnswerPlaces find_columns(const Header& header, const AnswerColumns& chosen,
     places.time_unit_s = chosen.time_unit_s > 0.0
                              ? chosen.time_unit_s
                              : unit_in(header[*places.time], format.time_unit_s);
+    if (!(places.time_unit_s > 0.0)) {
+      refuse(where, fmt::format("column '{}' does not say in what its times are: --time-unit s or "
+                                "--time-unit ms",
+                                header[*places.time]));
+    }
   }
   for (const RowCondition& condition : format.counted) {
     if (const auto place = find(header, {"", "", {condition.column}}, where)) {

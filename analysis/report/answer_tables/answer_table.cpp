@@ -206,7 +206,10 @@ class AnswerReader {
       return found->second;
     };
     const auto practice = std::ranges::count_if(rows, is_practice);
-    if (practice > 0 && practice < std::ssize(rows)) {
+    // all rows of a file may be of somebody who does not count
+    const bool is_chosen =
+        std::ranges::find(conditions_, column, &PlacedCondition::place) != conditions_.end();
+    if (practice > 0 && (practice < std::ssize(rows) || (is_of_states(name) && !is_chosen))) {
       const CsvRow& first = **std::ranges::find_if(rows, is_practice);
       refuse(first,
              fmt::format("column '{0}' says '{1}': {2} of {3} rows are practice, or not to be "

@@ -101,8 +101,12 @@ constexpr std::array<std::string_view, 34> practice_stems{
 constexpr std::array<std::string_view, 10> uncounted_stems{
     "exclu", "ausgeschl", "reject", "discard", "invalid",
     "catch", "attention", "filler", "dummy",   "outlier"};
-constexpr std::array<std::string_view, 6> counted_stems{"includ", "inclus", "valid",
-                                                        "keep",   "usable", "accept"};
+constexpr std::array<std::string_view, 8> counted_stems{"includ", "inclus", "valid",  "keep",
+                                                        "usable", "accept", "finish", "complet"};
+// What became of somebody, as Prolific, Gorilla and others say it in a column of states.
+constexpr std::array<std::string_view, 12> left_stems{"return", "reject",  "timed",  "timeout",
+                                                      "live",   "incompl", "unfini", "partial",
+                                                      "abando", "abort",   "withd",  "cancel"};
 
 bool is_practice_word(const std::string& word) {
   return word == "prac" || begins_with_any(word, practice_stems);
@@ -124,6 +128,21 @@ bool is_called_uncounted(const std::string& cell) {
 }
 }  // namespace
 
+bool is_of_states(const std::string& column) {
+  constexpr std::array<std::string_view, 3> known{"status", "state", "submitdate"};
+  return has_word(column, known);
+}
+
+namespace {
+// A survey that LimeSurvey's participant did not send has no such date.
+bool says_left(const std::string& column, const std::string& cell) {
+  const std::vector<std::string> words = words_of_name(cell);
+  return is_of_states(column) &&
+         (words.empty() ? words_of_name(column) == std::vector<std::string>{"submitdate"}
+                        : begins_with_any(words.front(), left_stems));
+}
+}  // namespace
+
 bool says_uncounted(const std::string& column, const std::string& cell) {
   const std::vector<std::string> words = words_of_name(column);
   const bool is_of_practice = std::ranges::any_of(words, is_practice_word);
@@ -133,7 +152,8 @@ bool says_uncounted(const std::string& column, const std::string& cell) {
   const bool is_of_uncounted = has_word_beginning(column, uncounted_stems);
   const bool is_of_counted = has_word_beginning(column, counted_stems);
   const std::optional<bool> yes = right_or_wrong(cell);
-  return is_called_uncounted(cell) || ((is_of_practice || is_of_uncounted) && yes == true) ||
+  return is_called_uncounted(cell) || says_left(column, cell) ||
+         ((is_of_practice || is_of_uncounted) && yes == true) ||
          (is_of_counted && !is_of_uncounted && yes == false);
 }
 }  // namespace tapstudy::analysis

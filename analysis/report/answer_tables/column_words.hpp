@@ -21,6 +21,9 @@ bool looks_like_date(const std::string& cell);
 // Whether a row is practice, or not to be counted, by what stands in one of its columns: the word
 // itself ("practice", "entraînement", "warm-up", E-Prime's "PracProc", Qualtrics' "Survey Preview",
 // "catch", "excluded" …), yes in a column that is called after it, no in one that says what counts
-// ("include", "valid"), or the count of PsychoPy's loop of that name.
+// ("include", "valid", "finished"), a state of somebody who did not finish or was not accepted
+// ("REJECTED", "returned", "live"), or the count of PsychoPy's loop of that name.
 bool says_uncounted(const std::string& column, const std::string& cell);
+// Whether a column is called after the state of a participant or a submission.
+bool is_of_states(const std::string& column);
 }  // namespace tapstudy::analysis

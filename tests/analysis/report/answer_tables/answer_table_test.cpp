@@ -178,6 +178,31 @@ TEST_CASE("of an export of its own only answers that count are read, of one bloc
              Contains("answers.csv:8: is of block 'other'") && Contains("--where block=main"));
 }
 
+TEST_CASE("a file of somebody who was not accepted is asked about, though all of it says so",
+          "[analysis][answer_tables]") {
+  const std::string text =
+      "participant,stimulus,response,status\nP1,a,a,REJECTED\nP1,b,b,REJECTED\n";
+  CHECK_THAT(refusal(text), Contains("column 'status' says 'REJECTED': 2 of 2 rows"));
+}
+
+TEST_CASE("the unit of times is the format's or stated, and is asked for otherwise",
+          "[analysis][answer_tables]") {
+  const auto table = [](const std::string& column) {
+    return "participant,stimulus,response," + column + "\nP1,a,a,500\nP1,b,b,700\n";
+  };
+  const auto first_time = [&](const std::string& column, double unit_s) {
+    AnswerReading reading;
+    reading.columns.time = column;
+    reading.columns.time_unit_s = unit_s;
+    return answers_in(table(column), reading).answers.front().response_time_s;
+  };
+  CHECK_THROWS_WITH(first_time("Reaction Time", 0.0), Contains("--time-unit s or --time-unit ms"));
+  CHECK(first_time("Reaction Time", 1e-3) == 0.5);
+  CHECK(first_time("RT (ms)", 0.0) == 0.5);
+  CHECK(first_time("RT [s]", 0.0) == 500.0);
+  CHECK(first_time("rt_s", 0.0) == 500.0);
+}
+
 TEST_CASE("a missing stimulus is no class, and a column that may hold times is not guessed at",
           "[analysis][answer_tables]") {
   CHECK_THAT(refusal("stimulus,response\na,a\nNA,a\n"), Contains("answers.csv:3: has an answer"));
@@ -443,6 +468,10 @@ TEST_CASE("practice among the answers is asked about, in whatever column other p
                                                     {"practice", "1", "0"},
                                                     {"Procedure[Trial]", "PracProc", "TrialProc"},
                                                     {"Status", "Survey Preview", "IP Address"},
+                                                    {"status", "RETURNED", "APPROVED"},
+                                                    {"Participant Status", "live", "complete"},
+                                                    {"Finished", "False", "True"},
+                                                    {"submitdate", "", "2024-05-01 10:00:00"},
                                                     {"practice_loop.thisN", "0", ""}}));
   CAPTURE(column);
   const auto row = [](const std::string& answer, const std::string& part) {

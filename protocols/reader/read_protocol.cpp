@@ -32,6 +32,7 @@ void read_whole(MapReader& top, Protocol& protocol, const SurfaceFiles& files,
                   max_participants, 1);
   if (top.has("participants")) {
     protocol.participants = planned;
+    top.leave_out_of_data("participants");
   }
   protocol.instructions = top.translated_paragraphs(
       {"instructions", "for participants, shown before the first trial; paragraphs"}, "");

@@ -25,7 +25,8 @@ struct Translations {
   std::string language{};  // that is wanted; where a text lacks it, the first that is given
   // By key path, of every text that was read; empty where it is given once for all languages.
   std::map<std::string, std::vector<std::string>> given{};
-  // By key path, of every text for people that the file has: what of it is in the data, too.
+  // By key path, of every text for people that the file has, and of plans: what of it is in the
+  // data, too.
   std::map<std::string, InData> texts{};
 };
 // The key paths of those that are given in some languages, but not in this one.
@@ -89,6 +90,9 @@ class MapReader {
   Range narrowed(const Range& stated, const Range& here) const;
   // The key is left as it is: what it depends on was rejected.
   void leave(const std::string& key) { known_.push_back(key); }
+  // Nothing of the key's value is in the data: as after a text for people, a study goes on with
+  // another.
+  void leave_out_of_data(const std::string& key);
   // Rejects the key if it is given: it is not for what the other keys say.
   void refuse(const std::string& key, const std::string& what);
   // The same of keys that say another way what the chosen one says; of several given, the first.

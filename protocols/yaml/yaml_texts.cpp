@@ -33,6 +33,12 @@ std::vector<std::string> texts_without(const std::string& language,
   return paths;
 }
 
+void MapReader::leave_out_of_data(const std::string& key) {
+  if (translations_ != nullptr) {
+    translations_->texts[path_of(key)] = InData::nothing;
+  }
+}
+
 std::string MapReader::text_at(const YAML::Node& node, const std::string& path, TextLines lines) {
   const bool is_text = node.IsScalar() && core::is_plain_text(node.Scalar());
   const bool is_line = is_text && !node.Scalar().empty() &&
@@ -57,7 +63,7 @@ std::string MapReader::any_text(const Key& key, const std::optional<std::string>
     return otherwise.value_or("");
   }
   if (lines == TextLines::several && languages == TextLanguages::one && translations_ != nullptr) {
-    translations_->texts[path_of(key.name)] = InData::nothing;
+    leave_out_of_data(key.name);
   }
   return languages == TextLanguages::one ? text_at(*node, path_of(key.name), lines)
                                          : translation_at(*node, path_of(key.name), lines);

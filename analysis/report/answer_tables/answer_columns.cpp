@@ -164,7 +164,9 @@ std::optional<std::size_t> find(const Header& header, const Wanted& wanted,
 std::size_t need(const Header& header, const Wanted& wanted, const std::string& where) {
   const auto found = find(header, wanted, where);
   if (!found) {
-    refuse(where, fmt::format("no column is known to hold it: name one by {} (there are {})",
+    constexpr std::size_t ends = std::string_view{"-column"}.size();  // --stimulus-column
+    refuse(where, fmt::format("no column is known to hold the {}: name one by {} (there are {})",
+                              wanted.option.substr(2, wanted.option.size() - 2 - ends),
                               wanted.option, fmt::join(header, ", ")));
   }
   return *found;

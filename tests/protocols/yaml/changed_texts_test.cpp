@@ -28,10 +28,12 @@ struct Change {
 }  // namespace
 
 // What people read, and nothing of what is presented, asked for or stored.
-TEST_CASE("wording, labels, instructions, notes and translations are texts, given or not",
+TEST_CASE("wording, labels, instructions, notes, translations and the planned number are no data",
           "[protocols][texts]") {
   const auto [what, by, key] = GENERATE(
       Change{"First some practice.", "First, some practice.", "blocks[0].instructions"},
+      Change{"participants: 12\n", "participants: 20\n", "participants"},
+      Change{"participants: 12\n", "", "participants"},
       Change{"low: guessed", "low: a guess", "blocks[0].confidence.low"},
       Change{"{en: \"Which material?\", ja", "{en: \"Of what?\", ja", "blocks[1].question.en"},
       Change{"ja: 木質繊維板", "ja: 木", "blocks[1].response_labels.mdf.ja"},

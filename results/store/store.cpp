@@ -189,8 +189,11 @@ Store::~Store() {
   } catch (const StoreError&) {  // NOLINT(bugprone-empty-catch): whoever opens it next does
   }
   try {
-    // extra: of this change, too, a power failure leaves nothing to roll back
-    database_.run("PRAGMA synchronous = EXTRA; PRAGMA journal_mode = DELETE");
+    // a file that was deleted or moved leaves the log beside that name to the one that is there now
+    if (!database_.has_moved()) {
+      // extra: of this change, too, a power failure leaves nothing to roll back
+      database_.run("PRAGMA synchronous = EXTRA; PRAGMA journal_mode = DELETE");
+    }
   } catch (const StoreError&) {  // NOLINT(bugprone-empty-catch): another process has it open
   }
 }

@@ -196,6 +196,21 @@ TEST_CASE("a database deleted in a session is written anew with all that it held
   CHECK(Store::open_existing(directory.path()).answered_trials("P01") == std::vector<int>{1, 2});
 }
 
+TEST_CASE("who closes a deleted database leaves the log of the new one alone", "[results][store]") {
+  const testing::TempDirectory directory;
+  Store next = [&] {
+    auto [store, row] = begun_study(directory.path());
+    fs::remove(directory / "study.db");
+    CHECK_THROWS_AS(store.add_trial(trial(row.id, 1, "a")), StoreRewritten);
+    Store other = Store::open_or_create(directory.path(), study);
+    SessionRow second = session("P02");
+    second.participant_index = 1;
+    other.add_session(second);
+    return other;
+  }();
+  CHECK(Store::open_existing(directory.path()).sessions().size() == 2);
+}
+
 TEST_CASE("a study that was moved is said, and goes on once it is back", "[results][store]") {
   const testing::TempDirectory directory;
   const std::string here = directory / "study";

@@ -42,14 +42,16 @@ class Pull {
     watchdog_.begin();
   }
   ~Pull() {
+    bool is_confirmed = false;  // by the last reply: earlier ones may be stale
     for (int i = 0; i < zero_force_packets; ++i) {
-      if (exchange_zeros(board_, pipe_).is_confirmed) {
-        watchdog_.end();
-        return;
-      }
+      is_confirmed = exchange_zeros(board_, pipe_).is_confirmed;
     }
-    watchdog_.repeat_zero_force();
-    person_.warn(force_may_be_on);
+    if (is_confirmed) {
+      watchdog_.end();
+    } else {
+      watchdog_.repeat_zero_force();
+      person_.warn(force_may_be_on);
+    }
   }
   Pull(const Pull&) = delete;
   Pull& operator=(const Pull&) = delete;

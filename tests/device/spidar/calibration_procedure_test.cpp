@@ -288,3 +288,47 @@ TEST_CASE("without a guardian no string pulls, and one that cannot be let go is 
     CHECK(bench.watchdog.must_repeat());
   }
 }
+
+// A board of the kind that echoes nothing: what it replied to the pull looks like any other reply.
+TEST_CASE("a string that hangs after a late reply is not taken for let go",
+          "[device][calibration][safety]") {
+  constexpr std::uint8_t latch = 0x51;
+  constexpr std::uint8_t set_outputs = 0x52;
+  int count = 0;
+  bool is_pulling = false;
+  bool hangs = false;
+  testing::FakeBus bus{device::cyverse_vendor, device::simple_product,
+                       [&](std::span<const std::uint8_t> request) {
+                         testing::Bytes reply;
+                         if (request[0] == latch && !hangs) {
+                           reply.assign(device::SimpleBoard::packet_bytes, 0);
+                           reply[0] = static_cast<std::uint8_t>(count & 0xFF);
+                           reply[1] = static_cast<std::uint8_t>(count >> 8);
+                           hangs = is_pulling;
+                         }
+                         is_pulling = is_pulling || (request[0] == set_outputs && request[1] != 0);
+                         return reply;
+                       }};
+  const device::UsbNode node = testing::node_of(bus);
+  constexpr std::chrono::milliseconds max_reply{100};
+  device::LibusbPipe pipe{node, {}, max_reply, testing::FakeBus::now};
+  const auto board = device::board_of(device::simple_product);
+  device::WatchdogChannel watchdog;
+  device::VirtualClock clock;
+  const std::jthread guardian{[&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      watchdog.complete_round();
+      usleep(1000);
+    }
+  }};
+  SlowOperator person{[] {}};
+  person.length_ = [&] {
+    constexpr int requests_until_pull = 3;
+    count += 6000;
+    bus.plan(testing::FakeBus::Trouble::late, requests_until_pull, 3 * max_reply / 2);
+  };
+  CHECK_THROWS_AS(device::calibrate_spidar(*board, pipe, watchdog, clock, person),
+                  device::DeviceError);
+  CHECK(hangs);
+  CHECK(watchdog.must_repeat());
+}

@@ -59,6 +59,7 @@ class UdpPipe final : public DatagramPipe {
   }
 
  private:
+  // Or a signal has come, which ends the wait, not the time: then nothing can be read yet.
   bool is_readable_by(Nanoseconds deadline) noexcept {
     constexpr Nanoseconds second = 1'000'000'000;
     const Nanoseconds left = deadline - now();
@@ -67,7 +68,7 @@ class UdpPipe final : public DatagramPipe {
     }
     pollfd waiting{socket_, POLLIN, 0};
     const timespec time_left{left / second, left % second};
-    return ppoll(&waiting, 1, &time_left, nullptr) > 0;
+    return ppoll(&waiting, 1, &time_left, nullptr) != 0;
   }
 
   int socket_;

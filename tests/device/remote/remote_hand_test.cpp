@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cstring>
@@ -69,20 +70,33 @@ TEST_CASE("what is no reply is none", "[device][remote]") {
   CHECK(!device::decoded_reply(bytes));
 }
 
+namespace {
+// Bound to any free port of the loopback; its address is returned in `address`.
+int open_socket(sockaddr& address) {
+  const int opened = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in any{};
+  any.sin_family = AF_INET;
+  any.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address = std::bit_cast<sockaddr>(any);
+  socklen_t size = sizeof address;
+  REQUIRE(bind(opened, &address, size) == 0);
+  REQUIRE(getsockname(opened, &address, &size) == 0);
+  return opened;
+}
+std::uint16_t port_of(const sockaddr& address) {
+  return ntohs(std::bit_cast<sockaddr_in>(address).sin_port);
+}
+}  // namespace
+
 TEST_CASE(
     "a socket of the loopback carries datagrams whole, is silent until the deadline, and tells of "
     "a "
     "closed port",
     "[device][remote]") {
-  const int other = socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  auto generic = std::bit_cast<sockaddr>(address);
+  sockaddr generic{};
   socklen_t size = sizeof generic;
-  REQUIRE(bind(other, &generic, size) == 0);
-  REQUIRE(getsockname(other, &generic, &size) == 0);
-  const auto pipe = device::open_udp_pipe(ntohs(std::bit_cast<sockaddr_in>(generic).sin_port));
+  const int other = open_socket(generic);
+  const auto pipe = device::open_udp_pipe(port_of(generic));
   const std::array<std::uint8_t, 5> sent{1, 2, 3, 4, 5};
   std::array<std::uint8_t, 8> got{};
   REQUIRE(pipe->send(sent) == device::DatagramOutcome::ok);
@@ -99,6 +113,36 @@ TEST_CASE(
   close(other);
   REQUIRE(pipe->send(sent) == device::DatagramOutcome::ok);
   CHECK(pipe->receive(got, pipe->now() + unhurried_ns).outcome == device::DatagramOutcome::gone);
+}
+
+namespace {
+std::atomic<int> signals_taken{0};
+}  // namespace
+
+TEST_CASE("a signal that comes while a reply is waited for is no missing reply",
+          "[device][remote][threads]") {
+  sockaddr generic{};
+  socklen_t size = sizeof generic;
+  const int other = open_socket(generic);
+  const auto pipe = device::open_udp_pipe(port_of(generic));
+  std::array<std::uint8_t, 8> got{};
+  REQUIRE(pipe->send(got) == device::DatagramOutcome::ok);
+  REQUIRE(recvfrom(other, got.data(), got.size(), 0, &generic, &size) == 8);
+  const auto usual = signal(SIGUSR1, [](int) { ++signals_taken; });
+  device::ReceivedDatagram received;
+  std::atomic<bool> has_ended{false};
+  std::thread waiting{[&] {
+    received = pipe->receive(got, pipe->now() + std::chrono::nanoseconds{unhurried}.count());
+    has_ended = true;
+  }};
+  while (signals_taken < 1000 && !has_ended) {
+    pthread_kill(waiting.native_handle(), SIGUSR1);
+  }
+  CHECK(sendto(other, "reply", 5, 0, &generic, size) == 5);
+  waiting.join();
+  signal(SIGUSR1, usual);
+  close(other);
+  CHECK(received.outcome == device::DatagramOutcome::ok);
 }
 
 TEST_CASE("the bridge's finger moves under the force it is sent", "[device][remote]") {

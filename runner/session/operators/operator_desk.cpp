@@ -243,8 +243,13 @@ void OperatorDesk::force_is(ForceState force) {
 }
 
 void OperatorDesk::device_says(const std::string& text) {
-  const std::lock_guard lock{mutex_};
+  const std::lock_guard lock{device_mutex_};
   device_says_ = text;
+}
+
+std::string OperatorDesk::device_said() const {
+  const std::lock_guard lock{device_mutex_};
+  return device_says_;
 }
 
 bool OperatorDesk::is_paused() const {
@@ -298,7 +303,8 @@ bool OperatorDesk::is_excluded() const {
 
 DeskView OperatorDesk::view() const {
   const std::lock_guard lock{mutex_};
-  DeskView view{trial_, current_, last_answer_, {}, force_, is_paused_, held_by_, device_says_, {}};
+  DeskView view{trial_,     current_, last_answer_,  {}, force_,
+                is_paused_, held_by_, device_said(), {}};
   for (const Logged& logged : log_) {
     const bool is_stored = is_over(logged.stored) && has_succeeded(logged.stored);
     view.log.push_back({logged.row, is_stored});

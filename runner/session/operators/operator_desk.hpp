@@ -74,6 +74,7 @@ class OperatorDesk final : public Operator {
   void check_is_possible(const OperatorCommand& command) const;
   std::optional<int> trial_of(const OperatorCommand& command) const;
   bool is_excluded() const;
+  std::string device_said() const;
   void apply(const OperatorCommand& command);
   std::string said_of(const OperatorCommand& command, const results::OperatorActionRow& row) const;
   results::CorrectionRow correction(const std::string& text, results::GivenBy by,
@@ -98,6 +99,8 @@ class OperatorDesk final : public Operator {
   ForceState force_{ForceState::off};
   bool is_paused_{false};
   std::string held_by_;
+  // By itself: who sets it holds the recorder, for which a command waits that holds the rest.
+  mutable std::mutex device_mutex_;
   std::string device_says_;
 };
 }  // namespace tapstudy::runner

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <future>
+
 #include "core/error.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "results/store/recorder.hpp"
@@ -206,4 +209,23 @@ TEST_CASE("an answer that waits for its confidence is not mistaken for the one b
   }
   CHECK_THAT(refused, Contains("once its confidence is given"));
   CHECK_NOTHROW(desk.post(parse_operator_command(fmt::format("correct @{} 1", trial.number))));
+}
+
+// Its teller holds the recorder, for which a command waits that is being stored.
+TEST_CASE("what a device says waits for no command", "[runner][operator][threads]") {
+  Attended study{{}};
+  results::Recorder recorder{study.store};
+  OperatorDesk* told = nullptr;
+  std::future<void> saying;
+  bool is_said = false;
+  const auto now_s = [&] {  // asked by a command on its way
+    saying = std::async(std::launch::async, [&] { told->device_says("warm"); });
+    is_said = saying.wait_for(std::chrono::seconds{10}) == std::future_status::ready;
+    return 3.0;
+  };
+  OperatorDesk desk{{study.protocol, study.session.id, false, now_s}, recorder};
+  told = &desk;
+  desk.post({OperatorAction::note, "is it hot?"}).stored.get();
+  CHECK(is_said);
+  CHECK(desk.view().device_says == "warm");
 }

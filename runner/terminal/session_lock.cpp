@@ -37,10 +37,17 @@ SessionLock::~SessionLock() {
   close(socket_);
 }
 
-// A link and what it leads to are one study.
+namespace {
+// A link and what it leads to are one study; "out/" and "out" are, before the directory is made,
+// too.
+std::string study_at(const std::string& directory) {
+  namespace fs = std::filesystem;
+  return fs::weakly_canonical(fs::absolute(directory) / "study.db").parent_path().string();
+}
+}  // namespace
+
 ParticipantLock::ParticipantLock(const std::string& directory, const std::string& participant_id)
-    : lock_{std::filesystem::weakly_canonical(std::filesystem::absolute(directory)).string() + " " +
-                participant_id,
+    : lock_{study_at(directory) + " " + participant_id,
             fmt::format("participant '{}' is in a session of this study right now, or what was "
                         "done in one is being amended",
                         participant_id)} {}

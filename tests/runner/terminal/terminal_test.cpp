@@ -5,6 +5,7 @@
 
 #include <array>
 #include <csignal>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "runner/terminal/terminal_output.hpp"
 #include "runner/terminal/typed_input.hpp"
 #include "support/catch.hpp"
+#include "support/texts.hpp"
 using namespace tapstudy;
 namespace {
 struct Terminal {
@@ -258,4 +260,15 @@ TEST_CASE("a process that was killed holds nothing", "[runner][lock]") {
   int status = 0;
   REQUIRE(waitpid(other, &status, 0) == other);
   CHECK_NOTHROW(SessionLock{"study P03", "taken"});
+}
+
+TEST_CASE("a study has one lock a participant, with and without a slash behind its folder",
+          "[runner][lock]") {
+  const testing::TempDirectory directory;
+  const runner::ParticipantLock held{directory / "out/", "P01"};  // which makes the folder
+  CHECK(runner::is_in_session(directory / "out", "P01"));
+  std::filesystem::create_directory(directory / "out");
+  CHECK(runner::is_in_session(directory / "out", "P01"));
+  CHECK(runner::is_in_session(directory / "out/", "P01"));
+  CHECK_FALSE(runner::is_in_session(directory / "out", "P02"));
 }

@@ -22,6 +22,14 @@ protocols::FilledForms filled_forms(const std::vector<results::FormAnswerRow>& a
   return filled;
 }
 
+protocols::FilledForms filled_before(const std::vector<results::FormAnswerRow>& answers) {
+  std::vector<results::FormAnswerRow> before;
+  std::ranges::copy_if(answers, std::back_inserter(before), [](const results::FormAnswerRow& row) {
+    return row.asked == asked_at_begin;
+  });
+  return filled_forms(before);
+}
+
 std::optional<std::string> ending_answer(const protocols::Protocol& protocol,
                                          const std::vector<results::FormAnswerRow>& answers) {
   for (const auto& [name, given] : filled_forms(answers)) {
@@ -38,7 +46,10 @@ std::optional<std::string> ending_answer(const protocols::Protocol& protocol,
 
 BetweenTrials::BetweenTrials(Parts parts, const std::vector<results::FormAnswerRow>& forms,
                              bool comes_again)
-    : parts_{std::move(parts)}, comes_again_{comes_again}, filled_{filled_forms(forms)} {
+    : parts_{std::move(parts)},
+      comes_again_{comes_again},
+      filled_{filled_forms(forms)},
+      filled_before_{filled_before(forms)} {
   for (const results::FormAnswerRow& row : forms) {
     asked_.emplace(row.form, row.asked);
   }
@@ -48,7 +59,7 @@ protocols::Schedule BetweenTrials::presented(const protocols::Schedule& schedule
   protocols::Schedule presented;
   std::ranges::copy_if(schedule, std::back_inserter(presented),
                        [&](const protocols::PlannedTrial& trial) {
-                         return is_presented(parts_.protocol.block(trial.block), filled_);
+                         return is_presented(parts_.protocol.block(trial.block), filled_before_);
                        });
   return presented;
 }
@@ -167,5 +178,8 @@ void BetweenTrials::ask(const protocols::Form& form, const std::string& asked) {
   }
   asked_.emplace(form.name, asked);
   filled_[form.name] = answers;
+  if (asked == asked_at_begin) {
+    filled_before_[form.name] = answers;
+  }
 }
 }  // namespace tapstudy::runner

@@ -31,6 +31,8 @@ inline constexpr const char* asked_at_end = "session end";
 
 // Of a form that was asked more than once, the latest.
 protocols::FilledForms filled_forms(const std::vector<results::FormAnswerRow>& answers);
+// Of these what was answered before the first trial, which decides what is presented.
+protocols::FilledForms filled_before(const std::vector<results::FormAnswerRow>& answers);
 // "no to 'agree' of form 'consent'": the answer that ended the participant's part in the study.
 std::optional<std::string> ending_answer(const protocols::Protocol& protocol,
                                          const std::vector<results::FormAnswerRow>& answers);
@@ -76,6 +78,7 @@ class BetweenTrials {
   bool comes_again_;
   std::set<std::pair<std::string, std::string>> asked_;  // forms, and where
   protocols::FilledForms filled_;
+  protocols::FilledForms filled_before_;  // the first trial
   bool has_begun_{false};
   std::optional<std::string> block_;
   int trials_since_rest_{0};

@@ -39,7 +39,7 @@ std::vector<int> unneeded_trials(const protocols::Protocol& protocol,
   std::set<int> done{answered.begin(), answered.end()};
   const std::vector<int> given_up = given_up_trials(protocol, participant_id, store);
   done.insert(given_up.begin(), given_up.end());
-  const protocols::FilledForms filled = filled_forms(store.form_answers_of(participant_id));
+  const protocols::FilledForms filled = filled_before(store.form_answers_of(participant_id));
   std::vector<int> unneeded;
   for (const protocols::PlannedTrial& trial : schedule) {
     const protocols::Block& block = protocol.block(trial.block);

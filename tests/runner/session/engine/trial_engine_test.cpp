@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "protocols/reader/read_protocol.hpp"
 #include "results/store/store.hpp"
@@ -588,6 +589,31 @@ TEST_CASE("a block is presented to those who answered so, now or in an earlier s
   later.begin(true);
   CHECK(again.asked_.empty());
   CHECK(presented(later) == std::vector<std::string>{"no", "all"});
+}
+
+TEST_CASE("what is presented rests on answers before the first trial, whatever is answered later",
+          "[runner][session]") {
+  protocols::Protocol protocol = with_consent();
+  protocol.blocks[1].forms_after = {"consent"};
+  const protocols::Schedule schedule = trials_of({"yes", "no", "all"});
+  runner::SessionStates states{1, [] { return 0.0; }};
+  std::vector<results::FormAnswerRow> stored;
+  const auto store = [&](const std::vector<results::FormAnswerRow>& rows) {
+    stored.insert(stored.end(), rows.begin(), rows.end());
+  };
+  Willing person{{{"agree", "yes"}, {"hand", "no"}}};
+  runner::BetweenTrials now{{protocol, person, states, store, [] {}}, {}};
+  now.begin(true);
+  const protocols::Schedule presented = now.presented(schedule);
+  REQUIRE(presented.size() == 2);
+  person.answers_["hand"] = "yes";
+  now.before(presented[0], presented);
+  now.before(presented[1], presented);
+  CHECK(person.asked_ == std::vector<std::string>{"consent", "about", "consent"});
+  const runner::BetweenTrials later{{protocol, person, states, store, [] {}}, stored};
+  for (const runner::BetweenTrials* const session : {&std::as_const(now), &later}) {
+    CHECK(session->presented(schedule).front().block == "no");
+  }
 }
 
 using namespace tapstudy::runner;

@@ -7,6 +7,7 @@
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <termios.h>
@@ -52,11 +53,17 @@ bool is_named(int descriptor) noexcept {
   return getsockopt(descriptor, SOL_SOCKET, SO_ACCEPTCONN, &is_listening, &flag_size) == 0 &&
          is_listening != 0;
 }
+
+bool is_file(int descriptor) noexcept {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 && (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode));
+}
 }  // namespace
 
-void close_named_sockets() noexcept {
+void close_files_and_named_sockets(std::span<const int> kept) noexcept {
   for (int descriptor = STDERR_FILENO + 1; descriptor < max_descriptors; ++descriptor) {
-    if (is_named(descriptor)) {
+    const bool is_kept = std::ranges::find(kept, descriptor) != kept.end();
+    if (!is_kept && (is_file(descriptor) || is_named(descriptor))) {
       close(descriptor);
     }
   }
@@ -267,7 +274,7 @@ Guardian::Guardian(const UsbNode& node, GuardianSettings settings) : channel_{sh
   if (child_ == 0) {
     setsid();  // detached from Ctrl-C at the terminal
     close(ends[1]);
-    close_named_sockets();
+    close_files_and_named_sockets(std::array{node.descriptor(), settings.relay});
     Watchdog{ends[0], node.descriptor(), settings, *channel_}.run();
   }
   close(ends[0]);

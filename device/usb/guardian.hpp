@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "device/usb/usb_node.hpp"
@@ -85,10 +86,11 @@ class WatchdogChannel {
 // Waits for a fresh round of the guardian, up to 0.1 s.
 bool is_guardian_alive(const WatchdogChannel& channel) noexcept;
 
-// Closes the sockets that listen or are bound to a name of their own. A forked child without exec
-// inherits them: the name of a session's lock and the port of its pages would stay taken for as
-// long as the child lives. Only async-signal-safe functions are used.
-void close_named_sockets() noexcept;
+// Closes all files but these, and the sockets that listen or are bound to a name of their own. A
+// forked child without exec inherits them: the lock of a study's journal, the name of a session's
+// lock and the port of its pages would stay taken for as long as the child lives. Only
+// async-signal-safe functions are used.
+void close_files_and_named_sockets(std::span<const int> kept) noexcept;
 
 inline constexpr int guardian_round_ms = 2;
 

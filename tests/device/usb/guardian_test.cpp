@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -433,7 +434,7 @@ TEST_CASE("a child that outlives its program does not keep the port that it inhe
   REQUIRE(pipe(closed.data()) == 0);
   const pid_t child = fork();
   if (child == 0) {
-    device::close_named_sockets();
+    device::close_files_and_named_sockets({});
     static_cast<void>(!write(closed[1], "c", 1));  // the pipe is no socket, and stays
     pause();
     _exit(0);
@@ -448,4 +449,21 @@ TEST_CASE("a child that outlives its program does not keep the port that it inhe
   CHECK(waitpid(child, nullptr, 0) == child);
   close(closed[0]);
   close(closed[1]);
+}
+
+TEST_CASE("a guardian that is started while its program holds a file locked does not keep the lock",
+          "[device][guardian][safety]") {
+  std::string name{"/tmp/tapstudy_lock_XXXXXX"};
+  const int locked = mkstemp(name.data());
+  REQUIRE(flock(locked, LOCK_EX) == 0);
+  Watched watched;
+  watched.guardian.emplace(*watched.node, settings());
+  while (watched.guardian->channel().rounds() == 0) {
+    usleep(1000);
+  }
+  close(locked);
+  const int again = open(name.c_str(), O_RDWR);
+  CHECK(flock(again, LOCK_EX | LOCK_NB) == 0);
+  close(again);
+  unlink(name.c_str());
 }

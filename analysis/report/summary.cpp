@@ -288,14 +288,17 @@ std::vector<std::string> names_in(const Summary& summary) {
 }
 }  // namespace
 
-void keep_only(Summary& summary, const std::vector<std::string>& names) {
-  const std::vector<std::string> known = names_in(summary);
+void check_are_parts(const std::vector<std::string>& names, const std::vector<std::string>& parts) {
   for (const std::string& name : names) {
-    if (std::ranges::find(known, name) == known.end()) {
+    if (std::ranges::find(parts, name) == parts.end()) {
       throw core::InvalidInput{fmt::format("--only {}: is not part of this report (one of: {})",
-                                           name, fmt::join(known, ", "))};
+                                           name, fmt::join(parts, ", "))};
     }
   }
+}
+
+void keep_only(Summary& summary, const std::vector<std::string>& names) {
+  check_are_parts(names, names_in(summary));
   const auto is_left_out = [&](const std::string& name) {
     return std::ranges::find(names, name) == names.end();
   };

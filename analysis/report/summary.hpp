@@ -66,6 +66,8 @@ CitingText methods(const Summary& summary);
 // where there are none.
 std::string tests_in_words(const Summary& summary);
 
+// Throws InvalidInput for a name that is none of the parts that a report can have, with these.
+void check_are_parts(const std::vector<std::string>& names, const std::vector<std::string>& parts);
 // Leaves out of a report all blocks and sections but those named. What a report must say anyway,
 // whose data these are and what was not as planned, stays.
 // Throws InvalidInput for a name that is none, with those that there are.

@@ -294,17 +294,72 @@ analysis::ReportSection confidence(const protocols::Protocol& protocol,
   }
   return analysis::confidence_section(scales, answers);
 }
-// Which parts of a report are asked for. A name that is neither a block's nor a section's may be
-// that of a block's part, which is known only once all are computed.
+
+// Blocks of the file that participants did in several sessions.
+std::vector<analysis::RepeatedBlock> repeated_blocks(const protocols::Protocol& protocol) {
+  std::vector<analysis::RepeatedBlock> repeated;
+  for (const protocols::Block& block : protocol.blocks) {
+    if (block.session.empty() || block.is_practice) {
+      continue;
+    }
+    const auto known = std::ranges::find(repeated, block.measure, &analysis::RepeatedBlock::name);
+    if (known == repeated.end()) {
+      repeated.push_back({block.measure, {block.name}});
+    } else {
+      known->blocks.push_back(block.name);
+    }
+  }
+  std::erase_if(repeated, [](const auto& block) { return block.blocks.size() < 2; });
+  return repeated;
+}
+
+bool has_parts(const protocols::Block& block) {
+  return block.comparison && !block.comparison->further_axes.empty();
+}
+
+// What a report of the study can have. Which parts a block has at further values of its stimuli is
+// known only once its answers are read.
+std::vector<std::string> names_of_parts(const protocols::Protocol& protocol) {
+  namespace names = analysis::study_sections;
+  std::vector<std::string> parts;
+  for (const protocols::Block& block : protocol.blocks) {
+    if (!block.is_practice) {
+      parts.push_back(block.name);
+    }
+  }
+  const bool asks_confidence = std::ranges::any_of(
+      protocol.blocks, [](const auto& block) { return block.confidence.has_value(); });
+  const std::array<std::pair<std::string_view, bool>, 4> absent{
+      {{names::contrasts, parts.size() < 2 && std::ranges::none_of(protocol.blocks, has_parts)},
+       {names::groups, protocol.groups.empty()},
+       {names::retest, repeated_blocks(protocol).empty()},
+       {names::confidence, !asks_confidence}}};
+  for (const std::string_view name : names::all) {
+    if (std::ranges::find(absent, std::pair{name, true}) == absent.end()) {
+      parts.emplace_back(name);
+    }
+  }
+  return parts;
+}
+
+bool is_part_of_block(const std::string& name, const protocols::Protocol& protocol) {
+  return std::ranges::any_of(protocol.blocks, [&](const protocols::Block& block) {
+    return has_parts(block) && name.starts_with(block.name + "_at_");
+  });
+}
+
+// Which parts of a report are asked for. Throws InvalidInput for a name that is none.
 class Wanted {
  public:
-  Wanted(const std::vector<std::string>& only, const protocols::Protocol& protocol) : only_{only} {
-    const auto is_known = [&](const std::string& name) {
-      return std::ranges::find(analysis::study_sections::all, name) !=
-                 analysis::study_sections::all.end() ||
-             protocol.find_block(name) != nullptr;
-    };
-    is_all_ = only.empty() || !std::ranges::all_of(only, is_known);
+  Wanted(const std::vector<std::string>& only, const protocols::Protocol& protocol)
+      : only_{only},
+        is_all_{only.empty() || std::ranges::any_of(only, [&](const std::string& name) {
+                  return is_part_of_block(name, protocol);
+                })} {
+    std::vector<std::string> parts = names_of_parts(protocol);
+    std::ranges::copy_if(only, std::back_inserter(parts),
+                         [&](const std::string& name) { return is_part_of_block(name, protocol); });
+    analysis::check_are_parts(only, parts);
   }
   bool has(std::string_view name) const {
     return is_all_ || std::ranges::find(only_, name) != only_.end();
@@ -568,24 +623,6 @@ std::vector<analysis::ParticipantGroup> participant_groups(
     }
   }
   return groups;
-}
-
-// Blocks of the file that participants did in several sessions.
-std::vector<analysis::RepeatedBlock> repeated_blocks(const protocols::Protocol& protocol) {
-  std::vector<analysis::RepeatedBlock> repeated;
-  for (const protocols::Block& block : protocol.blocks) {
-    if (block.session.empty() || block.is_practice) {
-      continue;
-    }
-    const auto known = std::ranges::find(repeated, block.measure, &analysis::RepeatedBlock::name);
-    if (known == repeated.end()) {
-      repeated.push_back({block.measure, {block.name}});
-    } else {
-      known->blocks.push_back(block.name);
-    }
-  }
-  std::erase_if(repeated, [](const auto& block) { return block.blocks.size() < 2; });
-  return repeated;
 }
 
 // Hypotheses are adjusted for the number of all of them, so that theirs are always computed, and

@@ -188,9 +188,10 @@ TEST_CASE("a part that a report does not have is refused with those that it has"
   const std::string study = simulated(directory, "paper/discrimination.yaml", {"--no-traces"});
   const auto refused = testing::tapstudy({"report", study, "--only", "sessions,nothing"});
   CHECK(refused.exit_code == 2);
-  CHECK_THAT(refused.standard_error,
-             Contains("--only nothing") &&
-                 Contains("discrimination, sessions, procedures, questionnaires, rendered"));
+  CHECK_THAT(
+      refused.standard_error,
+      Contains("--only nothing") &&
+          Contains("discrimination, mixed_models, sessions, procedures, questionnaires, rendered"));
   REQUIRE(testing::tapstudy({"report", study, "--only", "sessions"}).exit_code == 0);
   const std::string html = testing::contents(study + "/report/report.html");
   CHECK_THAT(html, Contains("How the sessions went") && Contains("SIMULATED") &&

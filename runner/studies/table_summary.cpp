@@ -47,6 +47,7 @@ NamedCsv read_file(const std::string& file, const std::string& encoding) {
   }
   std::string bytes = analysis::utf8_of(analysis::table_text(text, file), encoding, file);
   const bool is_json = analysis::is_json_list(bytes);
+  analysis::check_is_no_json_object(bytes, file);
   std::istringstream whole{std::move(bytes)};
   NamedCsv table{file,
                  is_json ? analysis::read_json_rows(whole, file) : analysis::read_csv(whole, file)};
@@ -82,7 +83,12 @@ analysis::AnswerReading reading_of(const TableOptions& options) {
   reading.counts_practice = options.counts_practice;
   reading.are_counts = options.are_counts;
   for (const std::string& response : options.responses) {
-    reading.responses.insert(split(response));
+    const auto [given, meaning] = split(response);
+    const auto [known, is_new] = reading.responses.emplace(given, meaning);
+    if (!is_new && known->second != meaning) {
+      throw core::InvalidInput{fmt::format("--responses: '{}' stands for '{}' and for '{}'", given,
+                                           known->second, meaning)};
+    }
   }
   return reading;
 }

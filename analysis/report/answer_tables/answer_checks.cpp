@@ -17,7 +17,7 @@ namespace {
 using results::AnswerRow;
 
 // The first of the names that read alike, by any of them.
-class Spellings {
+class Renaming {
  public:
   void rename(std::string& name) {
     const auto known = names_.find(name);
@@ -25,7 +25,7 @@ class Spellings {
       name = known->second;
       return;
     }
-    const std::string& first = first_.try_emplace(as_read(name), name).first->second;
+    const std::string& first = spellings_.first_like(name);
     if (first != name) {
       merged.push_back(fmt::format("'{}' is read as '{}'", name, first));
     }
@@ -36,7 +36,7 @@ class Spellings {
 
  private:
   std::unordered_map<std::string, std::string> names_;
-  std::unordered_map<std::string, std::string> first_;  // by what is read
+  Spellings spellings_;
 };
 
 double percent_right(const std::vector<bool>& right) {
@@ -98,8 +98,8 @@ std::string to_text(const AnswerOrigin& origin) {
 
 std::vector<std::string> merge_alike(std::vector<AnswerRow>& answers,
                                      std::map<std::string, std::string>& responses) {
-  Spellings labels;
-  Spellings people;
+  Renaming labels;
+  Renaming people;
   for (AnswerRow& answer : answers) {
     people.rename(answer.participant_id);
     labels.rename(answer.stimulus);

@@ -32,7 +32,8 @@ void check_differ(const std::set<std::string>& names, const std::string& file) {
   if (const auto alike = first_alike({names.begin(), names.end()})) {
     throw core::InvalidInput{
         fmt::format("{}: '{}' and '{}' read alike (they differ in case, spaces, dashes, zeros of "
-                    "numbers or how letters are composed): --merge-alike makes them one",
+                    "numbers, how letters are composed, marks that are not seen, or letters of "
+                    "another alphabet): --merge-alike makes them one",
                     file, alike->first, alike->second)};
   }
 }
@@ -211,13 +212,29 @@ class AnswerReader {
         std::ranges::find(conditions_, column, &PlacedCondition::place) != conditions_.end();
     if (practice > 0 && (practice < std::ssize(rows) || (is_of_states(name) && !is_chosen))) {
       const CsvRow& first = **std::ranges::find_if(rows, is_practice);
-      refuse(first,
-             fmt::format("column '{0}' says '{1}': {2} of {3} rows are practice, or not to be "
-                         "counted. Leave them out "
-                         "(--where '{0}!={1}', or '{0}=' and the value to be counted), or "
-                         "--count-practice",
-                         name, first.cells[column], practice, rows.size()));
+      std::set<std::string_view> counted;
+      std::set<std::string_view> left_out;
+      for (const CsvRow* const row : rows) {
+        (is_practice(row) ? left_out : counted).insert(row->cells[column]);
+      }
+      refuse(first, fmt::format("column '{}' says '{}': {} of {} rows are practice, or not to be "
+                                "counted. Leave them out ({}), or --count-practice",
+                                name, first.cells[column], practice, rows.size(),
+                                conditions_for(name, counted, left_out)));
     }
+  }
+  // What leaves out the rows with some values of a column, and no others.
+  static std::string conditions_for(const std::string& column,
+                                    const std::set<std::string_view>& counted,
+                                    const std::set<std::string_view>& left_out) {
+    if (counted.size() == 1 && left_out.size() > 1) {
+      return fmt::format("--where '{}={}'", column, *counted.begin());
+    }
+    std::vector<std::string> conditions;
+    for (const std::string_view value : left_out) {
+      conditions.push_back(fmt::format("--where '{}!={}'", column, value));
+    }
+    return fmt::format("{}", fmt::join(conditions, " "));
   }
   void add(const CsvRow& row, AnswerTable& table, std::vector<Origin>& origins) const {
     ++table.rows;
@@ -345,8 +362,9 @@ void count_on(std::vector<results::AnswerRow>& answers) {
 
 std::string why_no_answer(const std::string& response, const std::string& column,
                           const std::set<std::string>& responses) {
-  const auto like = std::ranges::find_if(
-      responses, [&](const std::string& name) { return as_read(name) == as_read(response); });
+  const auto like = std::ranges::find_if(responses, [&](const std::string& name) {
+    return first_alike({name, response}).has_value();
+  });
   return fmt::format(
       "response '{0}' is not a stimulus (if it can be answered, name it with --responses; if it "
       "stands for a stimulus, say --responses '{0}=STIMULUS'; if it is none, --where "

@@ -72,6 +72,8 @@ void settle_header(CsvText& table, const std::string& file);
 
 // Whether the text begins as a list does in JSON. Reads nothing else of it.
 bool is_json_list(std::string_view text);
+// Throws InvalidInput for a JSON object, and for one in each line, with what makes a list of it.
+void check_is_no_json_object(std::string_view text, const std::string& file);
 
 // A list of objects, as jsPsych saves its data, as the table that it would be in CSV: a column for
 // each key that any has, a row for each object, numbered as its line. What is null or missing is

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 #include <glib.h>
+#include <unicode/uchar.h>
+#include <unicode/uscript.h>
+#include <unicode/uspoof.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <regex>
 #include <string_view>
@@ -71,7 +76,7 @@ std::string utf8_of(const std::string& bytes, const std::string& encoding,
 }
 
 namespace {
-// The same for readers: dashes and apostrophes of all kinds, characters that take no place.
+// The same for readers: dashes and apostrophes of all kinds.
 void plain_characters(std::string& text) {
   const auto replace_all = [&](std::string_view one, std::string_view other) {
     for (auto at = text.find(one); at != std::string::npos; at = text.find(one, at)) {
@@ -84,15 +89,51 @@ void plain_characters(std::string& text) {
   for (const char* const apostrophe : {"\u2018", "\u2019", "\u02bc"}) {
     replace_all(apostrophe, "'");
   }
-  for (const char* const nothing : {"\u00ad", "\u200b", "\u200c", "\u200d", "\ufeff"}) {
-    replace_all(nothing, "");
+}
+
+struct CloseChecker {
+  void operator()(USpoofChecker* checker) const { uspoof_close(checker); }
+};
+
+// What the character looks like, by Unicode's table of characters that are confused.
+std::string look_of(std::string_view character) {
+  UErrorCode status = U_ZERO_ERROR;
+  static const std::unique_ptr<USpoofChecker, CloseChecker> checker{uspoof_open(&status)};
+  std::array<char, 64> look{};
+  const std::int32_t size = uspoof_getSkeletonUTF8(
+      checker.get(), 0, character.data(), static_cast<std::int32_t>(character.size()), look.data(),
+      static_cast<std::int32_t>(look.size()), &status);
+  return U_SUCCESS(status) != 0 ? std::string{look.data(), static_cast<std::size_t>(size)}
+                                : std::string{character};
+}
+
+bool is_greek_or_cyrillic(UChar32 character) {
+  UErrorCode status = U_ZERO_ERROR;
+  const UScriptCode script = uscript_getScript(character, &status);
+  return script == USCRIPT_GREEK || script == USCRIPT_CYRILLIC;
+}
+
+enum class Letters { as_they_are, as_they_look };  // those of Greek and Cyrillic
+
+// Without marks that are not seen. The text is UTF-8.
+std::string seen_characters(const char* text, Letters letters) {
+  std::string seen;
+  for (const char* next = text; *text != '\0'; text = next) {
+    next = g_utf8_next_char(text);
+    const std::string_view bytes{text, static_cast<std::size_t>(next - text)};
+    const auto character = static_cast<UChar32>(g_utf8_get_char(text));
+    if (u_hasBinaryProperty(character, UCHAR_DEFAULT_IGNORABLE_CODE_POINT) == 0) {
+      const bool is_replaced = letters == Letters::as_they_look && is_greek_or_cyrillic(character);
+      seen += is_replaced ? look_of(bytes) : std::string{bytes};
+    }
   }
+  return seen;
 }
 
 std::string with_single_spaces(std::string_view text) {
   std::string read;
   for (const char c : text) {
-    const bool is_space = c == ' ' || c == '\t';
+    const bool is_space = c == ' ' || c == '\t' || c == '\n' || c == '\r';
     if (!is_space || (!read.empty() && read.back() != ' ')) {
       read += is_space ? ' ' : c;
     }
@@ -107,27 +148,43 @@ std::string without_idle_zeros(const std::string& text) {
   static const std::regex decimals{"^([0-9]+)\\.0+$"};
   return std::regex_replace(std::regex_replace(text, leading, "$1"), decimals, "$1");
 }
-}  // namespace
 
-std::string as_read(const std::string& name) {
+std::string read_as(const std::string& name, Letters letters) {
   const Text normal{g_utf8_normalize(name.data(), size_of(name), G_NORMALIZE_ALL_COMPOSE)};
   if (!normal) {
     return name;  // no UTF-8
   }
-  const Text folded{g_utf8_casefold(normal.get(), -1)};
+  const Text folded{g_utf8_casefold(seen_characters(normal.get(), letters).c_str(), -1)};
   const Text composed{g_utf8_normalize(folded.get(), -1, G_NORMALIZE_ALL_COMPOSE)};
   std::string read{composed.get()};
   plain_characters(read);
   return without_idle_zeros(with_single_spaces(read));
 }
+}  // namespace
+
+std::string as_read(const std::string& name) {
+  return read_as(name, Letters::as_they_are);
+}
+
+const std::string& Spellings::first_like(const std::string& name) {
+  const std::array readings{as_read(name), read_as(name, Letters::as_they_look)};
+  std::string first = name;
+  for (const std::string& reading : readings) {
+    const auto known = first_.find(reading);
+    first = known == first_.end() ? first : known->second;
+  }
+  for (const std::string& reading : readings) {
+    first_.try_emplace(reading, first);
+  }
+  return first_.at(readings.front());
+}
 
 std::optional<std::pair<std::string, std::string>> first_alike(
     const std::vector<std::string>& names) {
-  std::unordered_map<std::string, std::string> known;  // by what is read
+  Spellings spellings;
   for (const std::string& name : names) {
-    const auto [other, is_new] = known.emplace(as_read(name), name);
-    if (!is_new) {
-      return std::pair{other->second, name};
+    if (const std::string& first = spellings.first_like(name); first != name) {
+      return std::pair{first, name};
     }
   }
   return std::nullopt;

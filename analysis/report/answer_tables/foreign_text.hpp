@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 namespace tapstudy::analysis {
@@ -11,9 +12,19 @@ namespace tapstudy::analysis {
 std::string utf8_of(const std::string& bytes, const std::string& encoding, const std::string& file);
 
 // The same for names that people read as one: whatever their case, the spaces in and around them
-// (no-break spaces included), how their letters are composed (Unicode, NFKC) and zeros before a
-// number.
+// (no-break spaces included), how their letters are composed (Unicode, NFKC), marks that are not
+// seen and zeros before a number.
 std::string as_read(const std::string& name);
+
+class Spellings {
+ public:
+  // The first of the names so far that people would read as this one, also because letters of Greek
+  // and Cyrillic look like Latin ones.
+  const std::string& first_like(const std::string& name);
+
+ private:
+  std::unordered_map<std::string, std::string> first_;  // by what is read
+};
 // The first two of the names that people would read as one.
 std::optional<std::pair<std::string, std::string>> first_alike(
     const std::vector<std::string>& names);

@@ -78,11 +78,37 @@ std::string cell_of(const Json& value) {
 }
 }  // namespace
 
-bool is_json_list(std::string_view text) {
+namespace {
+bool begins_with(char mark, std::string_view text) {
   constexpr std::string_view byte_order_mark{"\xef\xbb\xbf"};
   text.remove_prefix(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
   const auto first = text.find_first_not_of(" \t\r\n");
-  return first != std::string_view::npos && text[first] == '[';
+  return first != std::string_view::npos && text[first] == mark;
+}
+}  // namespace
+
+bool is_json_list(std::string_view text) {
+  return begins_with('[', text);
+}
+
+void check_is_no_json_object(std::string_view text, const std::string& file) {
+  if (!begins_with('{', text)) {
+    return;
+  }
+  const bool is_whole = Json::parse(text, nullptr, false).is_object();
+  const std::string_view line = text.substr(0, text.find('\n'));
+  if (is_whole) {
+    throw core::InvalidInput{
+        fmt::format("{0}: is one JSON object, not a list of objects, one for each trial: `jq .KEY "
+                    "'{0}' > list.json` makes a table of the list under its key KEY",
+                    file)};
+  }
+  if (Json::parse(line, nullptr, false).is_object()) {
+    throw core::InvalidInput{
+        fmt::format("{0}: has a JSON object in each line, not a list of them: `jq -s . '{0}' > "
+                    "list.json` makes one",
+                    file)};
+  }
 }
 
 CsvText read_json_rows(std::istream& text, const std::string& file) {

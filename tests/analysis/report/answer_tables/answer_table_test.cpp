@@ -233,6 +233,10 @@ TEST_CASE("names that read alike are refused, or one by declaration", "[analysis
        {"oak wood", "oak\u00a0wood"},            // no-break space
        {"gr\u00f6\u00dfe", "gro\u0308\u00dfe"},  // composed, decomposed
        {"\u00c4ste", "\u00e4ste"},
+       {"oak wood", "\"oak\nwood\""},
+       {"o\u0430k", "oak"},  // of Cyrillic
+       {"\u041c\u0421", "MC"},
+       {"\u03bfak", "oak"},  // of Greek
        {"01", "1"}}));
   const std::string of_stimuli =
       "stimulus,response\n" + one + ",b\nb,b\n" + other + "," + one + "\n";
@@ -636,12 +640,50 @@ TEST_CASE("more names that read alike: dashes, apostrophes, what takes no place,
   const auto [one, other] = GENERATE(table<std::string, std::string>({{"a-b", "a\u2013b"},
                                                                       {"o'k", "o\u2019k"},
                                                                       {"oak", "o\u200bak"},
+                                                                      {"oak", "\u200foak"},
+                                                                      {"oak", "oa\u2060k"},
                                                                       {"P01", "P1"},
                                                                       {"2", "2.0"}}));
   CHECK(as_read(one) == as_read(other));
   CHECK(as_read("1.05") != as_read("1.5"));
   CHECK(as_read("10") != as_read("1"));
   CHECK(as_read("P100") != as_read("P1"));
+}
+
+TEST_CASE("words of one alphabet that only look alike are told apart",
+          "[analysis][answer_tables]") {
+  const auto [one, other] = GENERATE(table<std::string, std::string>(
+      {{"l1", "ll"},
+       {"O", "0"},
+       {"s\u0131k", "sik"},                                                      // Turkish
+       {"\u0442\u043e\u043d", "\u0442\u043e\u043c"},                             // Russian
+       {"\u03c4\u03cc\u03bd\u03bf\u03c2", "\u03c4\u03cc\u03bc\u03bf\u03c2"}}));  // Greek
+  CHECK_FALSE(first_alike({one, other}));
+}
+
+TEST_CASE("what is proposed to leave practice out leaves it out, and nothing else",
+          "[analysis][answer_tables]") {
+  const std::string of_loops =
+      "participant,stimulus,response,practice_trials.thisN,trials.thisN\n"
+      "P1,a,a,0,\nP1,b,a,1,\nP1,b,b,2,\nP1,a,a,,0\nP1,b,b,,1\nP1,a,b,,2\n";
+  CHECK_THAT(refusal(of_loops), Contains("Leave them out (--where 'practice_trials.thisN=')"));
+  AnswerReading reading;
+  reading.conditions = {{"practice_trials.thisN", ""}};
+  CHECK(answers_in(of_loops, reading).answers.size() == 3);
+  const std::string of_parts =
+      "participant,stimulus,response,part\nP1,a,a,training\nP1,b,a,warm-up\nP1,b,b,one\n"
+      "P1,a,a,two\n";
+  CHECK_THAT(refusal(of_parts), Contains("(--where 'part!=training' --where 'part!=warm-up'), or"));
+}
+
+TEST_CASE("JSON that is no list is refused with the command that makes one of it",
+          "[analysis][answer_tables]") {
+  CHECK_THROWS_WITH(check_is_no_json_object("{\"a\": 1}\n{\"a\": 2}\n", "x.jsonl"),
+                    Contains("`jq -s . 'x.jsonl' > list.json`"));
+  CHECK_THROWS_WITH(check_is_no_json_object("{\"data\": [{\"a\": 1}]}", "x.json"),
+                    Contains("`jq .KEY 'x.json' > list.json`"));
+  CHECK_NOTHROW(check_is_no_json_object("{a},b\n1,2\n", "x.csv"));
+  CHECK_NOTHROW(check_is_no_json_object("[{\"a\": 1}]", "x.json"));
 }
 
 TEST_CASE("R's names of rows have no header, and a title is none", "[analysis][answer_tables]") {

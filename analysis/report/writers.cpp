@@ -12,6 +12,7 @@
 #include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/document/formats.hpp"
 #include "analysis/report/document/sections.hpp"
+#include "analysis/report/document/wording.hpp"
 #include "core/text/print.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -70,10 +71,7 @@ std::string findings_of(const BlockSummary& block) {
     core::print(text, "\n{}: {}\n", block.block, block.question);
   }
   for (const MainResult& result : block.main_results) {
-    text << wrapped(
-        fmt::format("{}: {}{}", result.name, with_interval(result.estimate, result.range),
-                    result.people ? fmt::format(", of {} participants", *result.people) : ""),
-        2);
+    text << wrapped(in_words(result), 2);
   }
   write_hypotheses_text(text, block.hypotheses);
   return text.str();
@@ -127,36 +125,45 @@ void write_text_within(std::ostream& out, const Summary& summary, std::size_t li
 }
 
 namespace {
-// Links to the blocks and to the study as a whole, where there are two or more.
+std::string heading_of(const BlockSummary& block) {
+  return block.block.empty() ? "Answers" : escaped(block.block);
+}
+
+// Links to every part of the page, folded ones too, in its order.
 void write_contents(std::ostream& out, const Summary& summary) {
-  if (summary.blocks.size() + (summary.sections.empty() ? 0 : 1) < 2) {
-    return;
-  }
-  out << "<nav class=contents aria-label=Blocks><ul>\n";
+  out << "<nav class=contents aria-label=Contents><ul>\n";
   for (const auto& block : summary.blocks) {
-    core::print(out, "<li><a href=\"#block-{0}\">{0}</a></li>\n", escaped(block->block));
+    core::print(out, "<li><a href=\"#{}\"><b>{}</b></a>{}</li>\n", escaped(block->anchor()),
+                heading_of(*block), block->details_links());
   }
+  out << "<li><a href=\"#methods\"><b>Methods</b></a>";
   if (!summary.sections.empty()) {
-    out << "<li><a href=\"#study\">The study as a whole</a></li>\n";
+    core::print(out, " <a href=\"#study\"><b>The study as a whole</b></a>{}",
+                section_links(summary.sections, "study"));
   }
-  out << "</ul></nav>\n";
+  out << "</li></ul></nav>\n";
 }
 
 void write_body(std::ostream& body, const Summary& summary) {
   write_contents(body, summary);
   for (const auto& block : summary.blocks) {
-    if (block->block.empty()) {
-      body << "<h2>Answers</h2>\n";
-    } else {
-      core::print(body, "<h2 id=\"block-{0}\">{0}</h2>\n<p>{1}</p>\n", escaped(block->block),
-                  escaped(block->question));
+    core::print(body, "<h2 id=\"{}\">{}</h2>\n", escaped(block->anchor()), heading_of(*block));
+    if (summary.blocks.size() > 1) {
+      core::print(body, "<p>{}</p>\n", escaped(block->question));
     }
     block->write_html(body);
   }
-  core::print(body, "<h2>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
+  core::print(body, "<h2 id=methods>Methods</h2><p>{}</p>\n", escaped(methods(summary)));
+  for (const auto& block : summary.blocks) {
+    if (!block->details_links().empty()) {
+      core::print(body, "<h2>{}: what else the answers say</h2>\n", heading_of(*block));
+      block->write_details_html(body);
+    }
+  }
   if (!summary.sections.empty()) {
-    body << "<h2 id=\"study\">The study as a whole</h2>\n";
-    write_sections_html(body, summary.sections, "study");
+    body << "<h2 id=study>The study as a whole</h2>\n";
+    write_sections_html(body, summary.sections, "study",
+                        !summary.blocks.empty() || summary.sections.size() > 1);
   }
 }
 
@@ -212,8 +219,12 @@ void write_html(std::ostream& out, const Summary& summary) {
   if (const std::string warning = banner(summary); !warning.empty()) {
     core::print(out, "<p class=simulated>{}</p>\n", escaped(warning));
   }
+  for (const auto& block : summary.blocks) {
+    block->write_words_html(out, summary.participants);
+  }
   if (summary.participants > 0) {
-    core::print(out, "<p>{} {}</p>\n", people_in_words(summary), escaped(tests_in_words(summary)));
+    core::print(out, "<p class=note>{} {}</p>\n", people_in_words(summary),
+                escaped(tests_in_words(summary)));
   }
   if (!summary.unfinished.empty()) {
     core::print(out, "<p>Unfinished sessions: {}.</p>\n",

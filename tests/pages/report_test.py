@@ -74,6 +74,26 @@ class Report(unittest.TestCase):
             self.run_program("report", directory)
             self.check(directory / "report")
 
+    def check_contents(self):
+        """Each of the links leads to its part, which is open then."""
+        links = self.driver.find_elements("css selector", ".contents a")
+        self.assertGreater(len(links), 5)
+        for link in links:
+            link.click()
+            target = self.driver.find_element("id", link.get_attribute("href").split("#")[1])
+            is_open, top = self.driver.execute_script(
+                "const around = arguments[0].closest('details'); return [!around || around.open, arguments[0].getBoundingClientRect().top]", target)
+            self.assertTrue(is_open, link.text)
+            self.assertLess(top, self.driver.execute_script("return innerHeight"), link.text)
+
+    def test_of_contents(self):
+        self.run_program("simulate", SOURCE / "protocols/paper/discrimination.yaml", "--participants", 10, "--out", self.directory / "demo")
+        self.run_program("report", self.directory / "demo")
+        self.driver.get((self.directory / "demo/report/report.html").as_uri())
+        self.assertLessEqual(self.driver.execute_script("return document.documentElement.scrollHeight / innerHeight"), 4)
+        self.assertLess(self.driver.execute_script("return document.querySelector('.matrix').getBoundingClientRect().bottom"), 800)
+        self.check_contents()
+
     def test_of_counts(self):
         (self.directory / "answers.csv").write_text(ANSWERS)
         self.run_program("report", "--counts", self.directory / "answers.csv", "--out", self.directory / "counts")

@@ -35,7 +35,9 @@ inline Formats formats_of(const analysis::BlockSummary& summary) {
   summary.write_text(text);
   formats.text = text.str();
   std::ostringstream html;
+  summary.write_words_html(html, 0);
   summary.write_html(html);
+  summary.write_details_html(html);
   formats.html = html.str();
   check_citations(formats.html, summary.sources());
   formats.json = summary.as_json();

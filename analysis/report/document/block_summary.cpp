@@ -4,13 +4,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
 #include <map>
+#include <ranges>
 #include <span>
 #include <unordered_set>
 
 #include "analysis/report/document/formats.hpp"
+#include "analysis/report/document/wording.hpp"
 #include "core/error.hpp"
+#include "core/text/print.hpp"
 namespace tapstudy::analysis {
 void BlockSummary::write_text(std::ostream& out, std::size_t most_lines) const {
   write_contents_text(out, results(), most_lines);
@@ -22,10 +26,104 @@ void BlockSummary::write_text(std::ostream& out, std::size_t most_lines) const {
   }
 }
 
+std::string BlockSummary::anchor() const {
+  return block.empty() ? "answers" : "block-" + block;
+}
+
+namespace {
+// Empty: it is not known.
+std::string who_answered(const BlockSummary& block, int participants) {
+  const int known = block.personal ? static_cast<int>(participants_of(*block.personal).size()) : 0;
+  const int answered = known > 0 ? known : participants;
+  if (answered == 0) {
+    return "";
+  }
+  const std::string of = answered == participants ? "" : fmt::format(" of {}", participants);
+  const std::string asked = block.question.empty() ? "" : fmt::format(" “{}”", block.question);
+  const bool has_end = block.question.ends_with('?') || block.question.ends_with('.');
+  return fmt::format("{}{} participant{} answered{}{}", answered, of, participants == 1 ? "" : "s",
+                     asked, has_end ? "" : ".");
+}
+
+std::string hypothesis_in_words(const HypothesisResult& result) {
+  std::string statement = result.planned.statement;
+  if (statement.ends_with('.')) {
+    statement.pop_back();
+  }
+  return fmt::format("{}: {} ({}{}{})", statement, p_value(result),
+                     result.p ? finding_of(result) + "; " : "", result.test,
+                     result.p_holm
+                         ? fmt::format("; {} after {}", p_value(*result.p_holm), "Holm 1979"_source)
+                         : "");
+}
+}  // namespace
+
+void BlockSummary::write_words_html(std::ostream& out, int participants) const {
+  constexpr std::size_t most_results = 6;
+  std::vector<std::string> sentences{who_answered(*this, participants)};
+  std::vector<std::string> found;
+  for (const MainResult& result : main_results | std::views::take(most_results)) {
+    found.push_back(in_words(result));
+  }
+  if (!found.empty()) {
+    char& first = found.front().front();
+    first = static_cast<char>(std::toupper(static_cast<unsigned char>(first)));
+    sentences.push_back(
+        fmt::format("{}{}.", fmt::join(found, "; "),
+                    main_results.size() > most_results ? "; the others stand in the tables" : ""));
+  }
+  std::vector<std::string> declared;
+  std::ranges::transform(hypotheses, std::back_inserter(declared), hypothesis_in_words);
+  if (!declared.empty()) {
+    sentences.push_back(fmt::format("Declared before the study: {}.", fmt::join(declared, "; ")));
+  }
+  std::erase(sentences, "");
+  core::print(out, "<p>{}{}</p>\n", block.empty() ? "" : fmt::format("<b>{}.</b> ", escaped(block)),
+              escaped_numbers(fmt::format("{}", fmt::join(sentences, " "))));
+}
+
+namespace {
+// Of a block's results: what is seen at once, and the rest.
+struct Results {
+  ReportSection first;
+  ReportSection others;
+};
+Results split(const ReportSection& whole) {
+  constexpr std::size_t most_tables = 2;
+  constexpr std::size_t most_charts = 2;
+  Results results{{}, {"More of the results"}};
+  for (const ReportTable* const table : tables_shown(whole, &ShownIn::page)) {
+    auto& tables =
+        results.first.tables.size() < most_tables ? results.first.tables : results.others.tables;
+    tables.push_back(*table);
+  }
+  for (const Chart& chart : whole.charts) {
+    auto& charts =
+        results.first.charts.size() < most_charts ? results.first.charts : results.others.charts;
+    charts.push_back(chart);
+  }
+  results.others.folded_charts = whole.folded_charts;
+  results.others.remarks = whole.remarks;
+  return results;
+}
+
+std::vector<ReportSection> details_of(const BlockSummary& block) {
+  std::vector<ReportSection> details = block.sections;
+  details.front() = split(block.results()).others;
+  return details;
+}
+}  // namespace
+
 void BlockSummary::write_html(std::ostream& out) const {
-  write_hypotheses_html(out, hypotheses);
-  write_contents_html(out, results());
-  write_sections_html(out, std::span{sections}.subspan(1), block.empty() ? "counts" : block);
+  write_contents_html(out, split(results()).first);
+}
+
+void BlockSummary::write_details_html(std::ostream& out) const {
+  write_sections_html(out, details_of(*this), anchor(), true);
+}
+
+std::string BlockSummary::details_links() const {
+  return section_links(details_of(*this), anchor());
 }
 
 std::set<core::Source> BlockSummary::sources() const {

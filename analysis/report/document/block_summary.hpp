@@ -106,12 +106,19 @@ class BlockSummary {
 
   // In 100 columns, without the sections of detail.
   void write_text(std::ostream& out, std::size_t most_lines = all_lines) const;
-  void write_html(std::ostream& out) const;  // a part of a page
+  // Parts of a page: a paragraph for a paper, with the question, what came out of whom and of what
+  // was declared; the results; what else the answers say.
+  void write_words_html(std::ostream& out, int participants) const;  // of the whole study
+  void write_html(std::ostream& out) const;
+  void write_details_html(std::ostream& out) const;
+  // Links to the parts of the last; empty: there are none.
+  std::string details_links() const;
   // {"block", "task", what `values` holds, TABLE: [{key: value}], "remarks": [sentence],
   // "hypotheses"}
   nlohmann::ordered_json as_json() const;
   // The publications that the page cites here.
   std::set<core::Source> sources() const;
+  std::string anchor() const;  // of the results on the page
   // What the block was made to find out.
   ReportSection& results() { return sections.front(); }
   const ReportSection& results() const { return sections.front(); }

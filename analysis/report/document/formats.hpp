@@ -32,7 +32,6 @@ std::string escaped_numbers(const std::string& text);
 void begin_page(std::ostream& out, const std::string& title, const std::string& more_style = {});
 void end_page(std::ostream& out,
               const std::vector<std::pair<std::string, std::string>>& provenance);
-void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult>& hypotheses);
 
 // JSON elements shared by the block summaries.
 nlohmann::ordered_json as_json(const Proportion& proportion);
@@ -51,6 +50,7 @@ void write_table_csv(std::ostream& out, const ReportTable& table);    // a heade
 void write_table_latex(std::ostream& out, const ReportTable& table, const std::string& label);
 // The columns that people see: those with a heading and, where there are rows, something in one.
 std::vector<std::size_t> shown_columns(const ReportTable& table);
+bool has_rows_of_participants(const ReportTable& table);
 // Names and words, which are read from the left.
 bool is_text_column(const ReportTable& table, std::size_t column);
 // Text as LaTeX shows it.

@@ -51,22 +51,6 @@ std::string dot_plot(const Dot& dot, const std::string& alternative) {
 }
 }  // namespace
 
-void write_hypotheses_html(std::ostream& out, const std::vector<HypothesisResult>& hypotheses) {
-  if (hypotheses.empty()) {
-    return;
-  }
-  out << "<h3>Declared before the study</h3><ul>\n";
-  for (const HypothesisResult& result : hypotheses) {
-    const std::string observed = result.p ? escaped(finding_of(result)) + "; " : "";
-    const std::string adjusted =
-        result.p_holm ? fmt::format("; {} after {}", p_value(*result.p_holm), "Holm 1979"_source)
-                      : "";
-    core::print(out, "<li>{} <b>{}</b> ({}{}{})</li>\n", escaped(result.planned.statement),
-                escaped(p_value(result)), observed, escaped(result.test), escaped(adjusted));
-  }
-  out << "</ul>\n";
-}
-
 namespace {
 constexpr std::size_t wide = 8;  // columns
 
@@ -192,8 +176,12 @@ void write_table_html(std::ostream& out, const ReportTable& table) {
     write_matrix_html(out, table);
     return;
   }
-  core::print(out, "<h3>{}</h3>", escaped(table.title));
+  constexpr std::size_t most_people = 5;
+  const bool is_folded = has_rows_of_participants(table) && table.rows.size() > most_people;
+  const std::string heading = fmt::format("<h3>{}</h3>", escaped(table.title));
+  out << (is_folded ? "<details><summary>" + heading + "</summary>" : heading);
   write_framed_html(out, table);
+  out << (is_folded ? "</details>\n" : "");
   if (!table.note.empty()) {
     core::print(out, "<p class=note>{}</p>\n", escaped(table.note));
   }

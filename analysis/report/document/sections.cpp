@@ -78,16 +78,34 @@ void write_sections_text(std::ostream& out, std::span<const ReportSection> secti
   }
 }
 
-// The headings of folded sections are their list of contents.
+namespace {
+// No name of a block, with its anchor before it, is that of a section.
+std::string section_anchor(const std::string& anchor, std::size_t place) {
+  return escaped(fmt::format("section-{}-{}", anchor, place + 1));
+}
+}  // namespace
+
+std::string section_links(std::span<const ReportSection> sections, const std::string& anchor) {
+  std::string links;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    if (has_content(sections[i])) {
+      links += fmt::format(" <a href=\"#{}\">{}</a>", section_anchor(anchor, i),
+                           escaped(sections[i].title));
+    }
+  }
+  return links;
+}
+
+// The anchor is within what is folded, since browsers open what is around a link's target.
 void write_sections_html(std::ostream& out, std::span<const ReportSection> sections,
-                         const std::string& anchor) {
-  const bool are_folded = std::ranges::count_if(sections, has_content) > 1;
+                         const std::string& anchor, bool are_folded) {
   for (std::size_t i = 0; i < sections.size(); ++i) {
     if (has_content(sections[i])) {
       const std::string heading = fmt::format("<h3>{}</h3>", escaped(sections[i].title));
-      core::print(out, "<{} id=\"{}-{}\">{}\n", are_folded ? "details class=section" : "section",
-                  escaped(anchor), i + 1,
-                  are_folded ? "<summary>" + heading + "</summary>" : heading);
+      core::print(out, "<{}>{}<a class=anchor id=\"{}\"></a>\n",
+                  are_folded ? "details class=section" : "section",
+                  are_folded ? "<summary>" + heading + "</summary>" : heading,
+                  section_anchor(anchor, i));
       write_contents_html(out, sections[i]);
       out << (are_folded ? "</details>\n" : "</section>\n");
     }

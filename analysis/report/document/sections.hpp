@@ -46,10 +46,12 @@ void write_contents_html(std::ostream& out, const ReportSection& section);
 // Titles, tables and remarks; figures are left out.
 void write_sections_text(std::ostream& out, std::span<const ReportSection> sections,
                          std::size_t most_lines = all_lines);
-// Each under its heading, folded where there are several. `anchor`: of the block, unlike that of
+// Each under its heading; browsers open what is linked to. `anchor`: of the block, unlike that of
 // others.
 void write_sections_html(std::ostream& out, std::span<const ReportSection> sections,
-                         const std::string& anchor);
+                         const std::string& anchor, bool are_folded);
+// Links to them, one after another.
+std::string section_links(std::span<const ReportSection> sections, const std::string& anchor);
 // Every table under its name, and "remarks".
 void add_sections(nlohmann::ordered_json& json, const std::vector<ReportSection>& sections);
 // Those that are written as files of their own, TABLE.csv.

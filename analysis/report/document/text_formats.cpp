@@ -37,6 +37,10 @@ std::vector<std::size_t> shown_columns(const ReportTable& table) {
   return shown;
 }
 
+bool has_rows_of_participants(const ReportTable& table) {
+  return !table.columns.empty() && table.columns.front().heading.words == "participant";
+}
+
 bool is_text_column(const ReportTable& table, std::size_t column) {
   return !table.rows.empty() && std::ranges::all_of(table.rows, [&](const auto& row) {
     return is_nothing(row[column]) || is_word(row[column]);
@@ -130,10 +134,6 @@ void write_line(std::ostream& out, const std::vector<std::string>& cells,
     line += i == 0 ? "  " + cells[i] + space : "  " + space + cells[i];
   }
   core::print(out, "{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
-}
-
-bool has_rows_of_participants(const ReportTable& table) {
-  return !table.columns.empty() && table.columns.front().heading.words == "participant";
 }
 
 // A table that is too wide: one entry below another.

@@ -55,6 +55,16 @@ std::string finding_of(const HypothesisResult& result) {
                                 : result.finding;
 }
 
+std::string in_words(const MainResult& result) {
+  const std::string value =
+      result.chance ? fmt::format("{} (95 % CI {}, chance {})", percent(result.estimate),
+                                  percent_range(result.range), percent(*result.chance))
+                    : fmt::format("{} (95 % CI {} to {})", rounded(result.estimate),
+                                  rounded(result.range.low), rounded(result.range.high));
+  return fmt::format("{} {}{}", result.name, value,
+                     result.people ? fmt::format(", of {} participants", *result.people) : "");
+}
+
 std::string p_value(const HypothesisResult& result) {
   if (!result.p) {
     return "not tested";

@@ -22,6 +22,8 @@ std::string p_value(double p);  // "p = .020", "p < .001"
 std::string p_value(const HypothesisResult& result);
 // "12/16 against 25 % by chance", or its finding.
 std::string finding_of(const HypothesisResult& result);
+// "accuracy 59 % (95 % CI 45–71 %, chance 25 %), of 10 participants"
+std::string in_words(const MainResult& result);
 
 // "(95 % CI over 4 participants 14–92 %)"; where the mean of participants is not the share of all
 // answers together, "(mean of 4 participants 61 %, 95 % CI 14–92 %)"; without an interval it says

@@ -397,7 +397,7 @@ TEST_CASE("a report of thresholds fits a terminal and names its figures",
   REQUIRE(std::count(whole.begin(), whole.end(), '\n') > 60);
   const std::string screen = within(60);
   CHECK(std::count(screen.begin(), screen.end(), '\n') <= 60);
-  CHECK_THAT(screen, Contains("Weber fraction of Young's modulus: 0.") &&
+  CHECK_THAT(screen, Contains("Weber fraction of Young's modulus 0.") &&
                          Contains("of 2 participants") && Contains("lines: --all"));
   const std::string small = within(5);
   CHECK(std::count(small.begin(), small.end(), '\n') <= 5);

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <regex>
 #include <sstream>
 
 #include "analysis/report/answer_tables/counts_csv.hpp"
 #include "analysis/report/confusion/chance_tests.hpp"
 #include "analysis/report/confusion/confusion_sections.hpp"
 #include "analysis/report/confusion/confusion_summary.hpp"
+#include "analysis/report/writers.hpp"
 #include "analysis/statistics/contingency/agreement.hpp"
 #include "analysis/statistics/contingency/information_transfer.hpp"
 #include "core/random/rng.hpp"
@@ -206,7 +208,8 @@ TEST_CASE("every format of a report has the same tables, and each of them rows o
     const auto& rows = formats.json.at(name.substr(0, name.size() - 4));
     CHECK(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')) == rows.size() + 1);
   }
-  CHECK_THAT(formats.html, Contains("<details class=section id=\"plates-1\"><summary><h3>"));
+  CHECK_THAT(formats.html, Contains("<details class=section><summary><h3>") &&
+                               Contains("<a class=anchor id=\"section-block-plates-1\">"));
   // rows of the table of cells add up to all answers, for each way to group them
   std::map<std::string, std::int64_t> sums;
   for (const auto& cell : formats.json["group_counts"]) {
@@ -216,6 +219,37 @@ TEST_CASE("every format of a report has the same tables, and each of them rows o
        {"participant", "stimulus", "material", "structure", "presentation"}) {
     CHECK(sums[by] == 72);
   }
+}
+
+TEST_CASE("a page has its results in words first, methods before details, links to all of them",
+          "[analysis][identification]") {
+  const BlockDesign design = drawn(four_plates(), 3);
+  Summary summary;
+  summary.participants = 6;
+  summary.blocks = {
+      find_statistic(statistic).summarise(design, {answers_of(design, 6, 3, 0.5, 4), {}})};
+  std::ostringstream out;
+  write_html(out, summary);
+  const std::string page = out.str();
+  std::vector<std::size_t> places;
+  for (const char* const part :
+       {"6 participants answered", "Accuracy ", ", chance 25&nbsp;%), of 6 participants",
+        "class=contents", "class=matrix", "<h2 id=methods>", "<details class=section>"}) {
+    CAPTURE(part);
+    places.push_back(page.find(part, page.find("</style>")));
+    CHECK(places.back() != std::string::npos);
+  }
+  CHECK(std::ranges::is_sorted(places));
+  const std::regex link{"href=\"#([^\"]+)\""};
+  std::size_t links = 0;
+  for (auto at = std::sregex_iterator{page.begin(), page.end(), link}; at != std::sregex_iterator{};
+       ++at, ++links) {
+    const std::string id = (*at)[1];
+    CAPTURE(id);
+    CHECK((page.find("id=\"" + id + "\"") != std::string::npos ||
+           page.find("id=" + id + ">") != std::string::npos));
+  }
+  CHECK(links > 10);
 }
 
 TEST_CASE("contrasts, learning and medians are those that R computes from the answers",

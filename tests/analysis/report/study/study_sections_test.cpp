@@ -107,7 +107,7 @@ TEST_CASE("the course of a session reads the same in text, HTML and JSON", "[ana
   std::ostringstream text;
   write_sections_text(text, sections());
   std::ostringstream html;
-  write_sections_html(html, sections(), "study");
+  write_sections_html(html, sections(), "study", true);
   for (const char* shown :
        {"37", "31", "3/4", "5/47", "30/68", "0/29", "0.123", "4.56", "-31 to -29", "met"}) {
     INFO(shown);
@@ -324,7 +324,7 @@ TEST_CASE("free text is in no format, and a mark that is no number is refused",
       questionnaires_section({about(), task_load()}, answers)};
   std::ostringstream all;
   write_sections_text(all, sections);
-  write_sections_html(all, sections, "study");
+  write_sections_html(all, sections, "study", true);
   for (const ReportTable* const table : csv_tables(sections)) {
     write_table_csv(all, *table);
   }

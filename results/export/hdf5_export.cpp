@@ -42,15 +42,15 @@ class Hdf5File {
   void add_texts(const std::string& path, const std::vector<const char*>& texts);
   void add_integers(const std::string& path, const std::vector<std::int64_t>& numbers);
   void add_reals(const std::string& path, const std::vector<double>& numbers);
-  // rows x columns, row by row, in chunks of one column, shuffled and deflated.
-  void add_matrix(const std::string& path, std::span<const double> numbers, std::size_t columns);
+  // Row by row: as many numbers in each.
+  void add_matrix(const std::string& path, std::span<const double> numbers, std::size_t rows);
   // Throws if what was written is not completely on its way to the disk.
   void close();
 
  private:
   struct Handle;
   struct Shape;
-  // Shuffled and deflated.
+  // Shuffled and deflated, but for what is small.
   void add_data(const std::string& path, const Shape& shape, hid_t type, const void* data);
   std::string file_;
   std::unique_ptr<Handle> handle_;
@@ -59,7 +59,9 @@ class Hdf5File {
 namespace {
 constexpr hsize_t rows_per_chunk = 4096;
 constexpr hsize_t bytes_per_chunk = 1'000'000;  // of texts, at most
-constexpr unsigned deflate_level = 6;
+constexpr hsize_t most_compact_bytes = 512;     // stored beside the dataset's description
+constexpr unsigned most_listed = 64;            // of a group: more are found by an index
+constexpr unsigned deflate_level = 9;
 
 // An object of the library, closed at the end of the scope.
 class Owned {
@@ -130,6 +132,8 @@ Hdf5File::Hdf5File(const std::string& file) : file_{file}, handle_{std::make_uni
   if (handle_->id < 0) {
     throw core::InvalidInput{file + ": cannot be written"};
   }
+  // The format of 2016 has shorter descriptions. Not of the root, which would have times in it.
+  H5Fset_libver_bounds(handle_->id, H5F_LIBVER_V110, H5F_LIBVER_V110);
 }
 
 Hdf5File::~Hdf5File() {
@@ -144,7 +148,10 @@ void Hdf5File::close() {
 }
 
 void Hdf5File::add_group(const std::string& path) {
-  const Owned group{H5Gcreate2(handle_->id, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Owned settings{H5Pcreate(H5P_GROUP_CREATE), H5Pclose, file_};
+  H5Pset_obj_track_times(settings, false);
+  H5Pset_link_phase_change(settings, most_listed, most_listed / 2);
+  const Owned group{H5Gcreate2(handle_->id, path.c_str(), H5P_DEFAULT, settings, H5P_DEFAULT),
                     H5Gclose, file_};
 }
 
@@ -196,7 +203,13 @@ void Hdf5File::add_data(const std::string& path, const Shape& shape, hid_t type,
   const Owned space{H5Screate_simple(dimensions, shape.size.data(), nullptr), H5Sclose, file_};
   const Owned settings{H5Pcreate(H5P_DATASET_CREATE), H5Pclose, file_};
   H5Pset_obj_track_times(settings, false);
-  if (shape.size.front() > 0) {  // what is empty has no chunks
+  hsize_t bytes = H5Tget_size(type);
+  for (const hsize_t size : shape.size) {
+    bytes *= size;
+  }
+  if (bytes > 0 && bytes <= most_compact_bytes) {  // what is empty has no layout of its own
+    H5Pset_layout(settings, H5D_COMPACT);
+  } else if (bytes > 0) {
     H5Pset_chunk(settings, dimensions, shape.chunk.data());
     H5Pset_shuffle(settings);
     H5Pset_deflate(settings, deflate_level);
@@ -215,10 +228,12 @@ void Hdf5File::add_reals(const std::string& path, const std::vector<double>& num
   add_data(path, {{numbers.size()}, {chunk_of(numbers.size())}}, H5T_NATIVE_DOUBLE, numbers.data());
 }
 
+// A chunk has a part of every row. Deflate then finds, within its 32 KiB, that alike bytes of one
+// row are those of another: forces as commanded and as achieved are mostly the same.
 void Hdf5File::add_matrix(const std::string& path, std::span<const double> numbers,
-                          std::size_t columns) {
-  const hsize_t rows = numbers.size() / columns;
-  add_data(path, {{rows, columns}, {chunk_of(rows), 1}}, H5T_NATIVE_DOUBLE, numbers.data());
+                          std::size_t rows) {
+  const hsize_t columns = numbers.size() / rows;
+  add_data(path, {{rows, columns}, {rows, chunk_of(columns)}}, H5T_NATIVE_DOUBLE, numbers.data());
 }
 
 namespace {
@@ -284,28 +299,36 @@ double number_in(const Cell& cell) {
   return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(cell);
 }
 
-void add_trace(Hdf5File& file, const Table& trace, std::int64_t trial_id) {
-  std::vector<double> numbers;
-  trace.each_row([&](const Row& row) {
-    for (const Cell& cell : row) {
-      numbers.push_back(number_in(cell));
-    }
-  });
+void add_traces_group(Hdf5File& file) {
   std::vector<std::string> names;
   std::vector<std::string> units;
   std::vector<std::string> descriptions;
-  for (const Column& column : trace.columns) {
+  for (const Column& column : trace_columns()) {
     names.push_back(column.name);
     units.push_back(column.unit);
     descriptions.push_back(column.description);
   }
+  file.add_group("/traces");
+  file.describe("/traces", "columns", names);
+  file.describe("/traces", "units", units);
+  file.describe("/traces", "descriptions", descriptions);
+}
+
+void add_trace(Hdf5File& file, const Table& trace, std::int64_t trial_id) {
+  std::vector<std::vector<double>> columns(trace.columns.size());
+  trace.each_row([&](const Row& row) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      columns[i].push_back(number_in(row[i]));
+    }
+  });
+  std::vector<double> numbers;
+  for (const std::vector<double>& column : columns) {
+    numbers.insert(numbers.end(), column.begin(), column.end());
+  }
   const std::string path = "/traces/" + trace.name;
-  file.add_matrix(path, numbers, trace.columns.size());
+  file.add_matrix(path, numbers, columns.size());
   file.describe(path, "description", trace.description);
   file.describe(path, "trial_id", trial_id);
-  file.describe(path, "columns", names);
-  file.describe(path, "units", units);
-  file.describe(path, "descriptions", descriptions);
 }
 }  // namespace
 
@@ -320,7 +343,7 @@ void write_hdf5_file(const std::string& name, Store& store, const StudyExport& s
   for (const Table& table : study.tables) {
     add_table(file, table);
   }
-  file.add_group("/traces");
+  add_traces_group(file);
   each_traced_trial(study,
                     [&](std::int64_t trial) { add_trace(file, trace_table(store, trial), trial); });
   file.close();

@@ -80,8 +80,10 @@ void write_csv_files(const std::string& directory, Store& store, const StudyExpo
 //   /tables/NAME/COLUMN  a dataset a column, one-dimensional; attributes unit, description. Missing
 //                        numbers are NaN (a column of integers with missing ones is one of
 //                        doubles), missing texts "NA"
-//   /traces/trial_000001 ticks x columns, doubles; attributes trial_id, columns, units,
-//   descriptions
+//   /traces              attributes columns, units, descriptions
+//   /traces/trial_000001 columns x ticks, doubles (in Octave and R, which count dimensions the
+//   other
+//                        way round, ticks x columns); attributes trial_id, description
 void write_hdf5_file(const std::string& name, Store& store, const StudyExport& study);
 
 // Fills a directory with a dataset of the Brain Imaging Data Structure (BIDS 1.8, behaviour):

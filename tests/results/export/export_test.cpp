@@ -250,6 +250,7 @@ TEST_CASE("h5py reads of an export what sqlite3 reads of the study, traces to th
   CHECK_THAT(read.standard_output, Contains("8 bytes a number"));
   CHECK(export_hdf5(study, directory / "again.h5").exit_code == 0);
   CHECK(testing::contents(directory / "out.h5") == testing::contents(directory / "again.h5"));
+  CHECK(fs::file_size(directory / "out.h5") <= fs::file_size(study + "/study.db"));
 }
 
 TEST_CASE("an HDF5 file is there whole or not at all", "[results][export]") {

@@ -44,18 +44,19 @@ def main(study, file):
     trials = [row[0] for row in database.execute("SELECT DISTINCT trial_id FROM trace_chunk")]
     assert sorted(exported["traces"]) == [f"trial_{trial:06}" for trial in sorted(trials)]
     ticks = 0
+    columns = list(exported["traces"].attrs["columns"])
+    assert list(exported["traces"].attrs["units"])[:2] == ["ns", "m"]
     for trial in trials:
         matrix = exported[f"traces/trial_{trial:06}"]
         stored = read_trace.trace(f"{study}/study.db", trial)
         assert matrix.attrs["trial_id"] == trial
         mode, = database.execute("SELECT mode FROM v_trials WHERE trial_id = ?", (trial,)).fetchone()
         assert f"({mode})" in matrix.attrs["description"]
-        assert list(matrix.attrs["columns"]) == list(stored.dtype.names[:-1])
-        assert list(matrix.attrs["units"])[:2] == ["ns", "m"]
+        assert columns == list(stored.dtype.names[:-1])
         assert (matrix.compression, matrix.shuffle) == ("gzip", True)
-        for i, column in enumerate(matrix.attrs["columns"]):
+        for i, column in enumerate(columns):
             expected = stored[column].astype("f8")
-            assert matrix[:, i].tobytes() == expected.tobytes(), f"trial {trial}: {column}"
+            assert matrix[i].tobytes() == expected.tobytes(), f"trial {trial}: {column}"
         ticks += len(stored)
     print(len(trials), "trials", ticks, "ticks", numpy.dtype("f8").itemsize, "bytes a number")
 

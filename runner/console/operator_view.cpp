@@ -152,7 +152,7 @@ Json log_of(const DeskView& desk, bool is_blind) {
 
 // Beside what is said of the force.
 std::vector<std::string> warnings_of(const SessionInView& session, const DeskView& desk) {
-  std::vector<std::string> warnings{session.last_fault, desk.held_by};
+  std::vector<std::string> warnings{session.last_fault};
   if (!desk.device_says.empty()) {
     warnings.push_back("The device says: " + desk.device_says);
   }
@@ -181,6 +181,7 @@ std::string state_json(const SessionInView& session, const DeskView& desk,
        desk.force == ForceState::unknown ? Json{} : Json(desk.force == ForceState::off)},
       {"ticks", {{"total", totals.ticks}, {"late", totals.late}}},
       {"masking", session.masking ? json_of(*session.masking) : Json{}},
+      {"waits_for", desk.held_by},
       {"warnings", Json::array()}};
   if (desk.force == ForceState::unknown) {
     json["warnings"].push_back(device::force_may_be_on);
@@ -308,6 +309,7 @@ std::string status_text(const SessionInView& session, const DeskView& desk,
   for (const std::string& warning : warnings_of(session, desk)) {
     text += fmt::format("  {}\n", warning);
   }
+  text += desk.held_by.empty() ? "" : fmt::format("  {} (then: resume)\n", desk.held_by);
   return text;
 }
 

@@ -41,9 +41,11 @@ function showBadges(next) {
   setText(byId("fault"), next.state === "faulted" ? word("fault_text") : "");
 }
 
-function showWarnings(warnings) {
-  showIfChanged(byId("warnings"), warnings ?? [], (texts) =>
-    texts.map((text) => el("p", {}, word("warning", { text }))));
+// What the operator is waited for may end as the terminal goes on: "…, and type resume".
+function showWarnings({ warnings, waits_for: task }) {
+  const texts = (warnings ?? []).map((text) => word("warning", { text }));
+  if (task) texts.push(word("waits_for", { text: task.replace(/,? and$/u, "."), action: word("action_resume") }));
+  showIfChanged(byId("warnings"), texts, () => texts.map((text) => el("p", {}, text)));
 }
 
 function showTitles() {
@@ -58,7 +60,7 @@ function showState(next) {
   showTitles();
   showSession(next);
   showBadges(next);
-  showWarnings(next.warnings);
+  showWarnings(next);
   showTrial(next, actions);
   showLastAnswer(next, actions);
   showMachine(next);

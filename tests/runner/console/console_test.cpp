@@ -312,6 +312,17 @@ TEST_CASE("what a device says to the operator is at the page and at the terminal
              Contains(R"("warnings":["The device says: the motors are hot"])"));
 }
 
+TEST_CASE("who is waited for is told to go on by resume", "[runner][console]") {
+  runner::DeskView desk;
+  desk.held_by = "Mount the real plate 'mdf'.";
+  const runner::SessionInView session = session_in_view(false);
+  CHECK_THAT(
+      runner::state_json(session, desk, {}),
+      Contains(R"("waits_for":"Mount the real plate 'mdf'.")") && Contains(R"("warnings":[])"));
+  CHECK_THAT(runner::status_text(session, desk, {}),
+             Contains("Mount the real plate 'mdf'. (then: resume)"));
+}
+
 TEST_CASE("a blind operator's terminal names no stimulus", "[runner][console]") {
   CHECK_THAT(status(true), Contains("presented: A; B (felt)"));
   CHECK_THAT(status(true), !Contains("mdf") && !Contains("acrylic"));

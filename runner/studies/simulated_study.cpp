@@ -21,6 +21,7 @@
 #include "results/store_error.hpp"
 #include "runner/session/devices/rigs.hpp"
 #include "runner/session/engine/open_study.hpp"
+#include "runner/session/engine/remaining_trials.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/engine/trial_engine.hpp"
 #include "runner/session/participants/simulated_participant.hpp"
@@ -63,15 +64,20 @@ SimulatedSessions add_sessions(SessionPlan plan, const protocols::Protocol& prot
 }
 
 // The places of simulated participants follow from their numbers, whatever share they are in.
-void check_has_none(results::Store& store, const std::string& directory) {
-  for (const results::SessionRow& session : store.sessions()) {
-    if (session.mode == results::Mode::simulated) {
-      throw core::InvalidInput{
-          fmt::format("{}: participant '{}' is in this study already (choose "
-                      "another --out)",
-                      directory, session.participant_id)};
-    }
+void check_has_none(results::Store& store, const protocols::Protocol& protocol,
+                    const std::string& directory) {
+  std::vector<results::SessionRow> sessions = store.sessions();
+  std::erase_if(sessions, [](const auto& one) { return one.mode != results::Mode::simulated; });
+  if (sessions.empty()) {
+    return;
   }
+  const bool are_all_done = std::ranges::all_of(sessions, [&](const auto& session) {
+    return trials_done(protocol, session.participant_id, store).are_all();
+  });
+  throw core::InvalidInput{fmt::format(
+      "{}: participant '{}' is in this study already{} (choose another --out)", directory,
+      sessions.front().participant_id,
+      are_all_done ? "" : ", and not all of its trials are simulated (was its program ended?)")};
 }
 
 std::vector<SimulatedSessions> add_participants(const SimulatedStudy& study,
@@ -184,7 +190,7 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   results::Store store = open_study(study.directory, protocol, study.protocol_file);
   std::vector<SimulatedSessions> participants;
   store.in_one_transaction([&] {
-    check_has_none(store, study.directory);
+    check_has_none(store, protocol, study.directory);
     participants = add_participants(study, protocol, rig, store);
   });
   if (is_new) {

@@ -277,6 +277,18 @@ void check_states(Store& store, CheckedCourse& course) {
           session));
     }
   }
+  std::vector<std::string> never_begun;
+  for (const results::SessionRow& session : store.sessions()) {
+    if (session.mode == results::Mode::simulated && !sessions.contains(session.id)) {
+      never_begun.push_back(session.participant_id);
+    }
+  }
+  if (!never_begun.empty()) {
+    course.open_sessions.push_back(fmt::format(
+        "{} simulated sessions never began, from {} on: the simulation is unfinished (is it "
+        "running, was its program killed?)",
+        never_begun.size(), never_begun.front()));
+  }
 }
 
 // Empty: it corrects an answer that there is, from what that was to what can be answered.

@@ -289,6 +289,16 @@ TEST_CASE("an untouched study of every table is sound", "[runner][verify]") {
   CHECK(found.answers == 7);
 }
 
+TEST_CASE("a simulation of which a session never began is called unfinished", "[runner][verify]") {
+  ChangedStudy& study = changed_study();
+  study.store().query("BEGIN").finish();
+  study.store().query("DELETE FROM session_event").finish();
+  const runner::Verification found = runner::verification_of(study.store(), study.path());
+  study.store().query("ROLLBACK").finish();
+  CHECK_THAT(fmt::format("{}", fmt::join(found.remarks, "; ")),
+             Contains("2 simulated sessions never began, from sim-01 on"));
+}
+
 TEST_CASE("verification notices every value that is changed, but for those that are kept once",
           "[runner][verify]") {
   ChangedStudy& study = changed_study();

@@ -190,6 +190,9 @@ double amplitude_at(double frequency_hz, const FreeDecay& rest) {
 
 void mark_background(const std::vector<FreeDecay>& rests, std::vector<RepeatedMode>& modes) {
   for (RepeatedMode& mode : modes) {
+    if (mode.standing == Standing::line || hz(mode) >= highest_hum_hz) {
+      continue;
+    }
     // Within so few periods a slow movement looks like it, of any lower frequency.
     const bool is_short = 2.0 * std::numbers::pi * mode.damping_ratio.value * min_periods > 1.0;
     std::vector<double> amplitudes;
@@ -198,8 +201,7 @@ void mark_background(const std::vector<FreeDecay>& rests, std::vector<RepeatedMo
                                ? amplitude_in({1.0 / rest.duration_s(), around * hz(mode)}, rest)
                                : amplitude_at(hz(mode), rest));
     }
-    if (mode.standing != Standing::line && hz(mode) < highest_hum_hz && !amplitudes.empty() &&
-        quantile(amplitudes, 0.5) >= as_strong * mode.amplitude) {
+    if (!amplitudes.empty() && quantile(amplitudes, 0.5) >= as_strong * mode.amplitude) {
       mode.standing = Standing::background;
       mode.why = "as strong at rest as in the taps";
     }

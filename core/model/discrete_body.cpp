@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "core/error.hpp"
 #include "core/model/element_order.hpp"
 #include "core/model/mesh/wanted_order.hpp"
 #include "core/model/progress.hpp"
@@ -29,6 +30,10 @@ DiscreteBody discretised(const Plate& plate, const Material& material, const Mes
                          const std::vector<Fixation>& regions, const ProgressHook& progress) {
   std::vector<Fixation> all_regions = plate.fixations;
   all_regions.insert(all_regions.end(), regions.begin(), regions.end());
+  if (!plate.mesh.shell_width_m && std::holds_alternative<Solid>(plate.shape) &&
+      is_sheet(plate.shape)) {
+    throw ModelError{"mesh: a surface with a thickness_m has shell elements, no tetrahedra"};
+  }
   if (plate.mesh.shell_width_m) {
     return shell_body(plate, material, shell_order, all_regions, progress);
   }

@@ -119,15 +119,23 @@ bool is_on_face(double z_m, Face face, const Bounds& body) {
   return false;
 }
 
-bool is_on_side(const Vec3& node_m, Side side, const Bounds& body) {
+bool is_on_side(const Vec3& node_m, Side side, const Bounds& body, double snap_m) {
   const auto number = static_cast<int>(side);
   const Eigen::Index axis = number / 2;
   const double at = number % 2 == 0 ? body.low_m[axis] : body.high_m[axis];
-  return std::abs(node_m[axis] - at) <= body.snap_m();
+  return std::abs(node_m[axis] - at) <= snap_m;
 }
 
-bool selects_node(const Fixation& fixation, const Vec3& node_m, const Bounds& body) {
-  const double snap_m = body.snap_m();
+// The rim of a bent sheet lies on a plane as nearly as its normals are known.
+double snap_of(const Shape& shape) {
+  constexpr double of_thickness = 0.01;
+  const auto* const solid = std::get_if<Solid>(&shape);
+  const bool is_bent = solid != nullptr && solid->sheet();
+  return std::max(bounds(shape).snap_m(),
+                  is_bent ? of_thickness * solid->sheet()->thickness_m : 0.0);
+}
+
+bool selects_node(const Fixation& fixation, const Vec3& node_m, const Bounds& body, double snap_m) {
   switch (fixation.shape) {
     case RegionShape::vertex:
     case RegionShape::disc:
@@ -139,7 +147,7 @@ bool selects_node(const Fixation& fixation, const Vec3& node_m, const Bounds& bo
       return ((node_m - fixation.low_m).array() >= -snap_m).all() &&
              ((fixation.high_m - node_m).array() >= -snap_m).all();
     case RegionShape::side:
-      return is_on_side(node_m, fixation.side, body);
+      return is_on_side(node_m, fixation.side, body, snap_m);
   }
   return false;
 }
@@ -155,6 +163,7 @@ int nearest_corner(const TetMesh& mesh, const Vec3& at_m) {
 std::vector<Eigen::Index> selected_nodes(const Fixation& fixation, const TetMesh& mesh,
                                          const Shape& shape) {
   const Bounds body = bounds(shape);
+  const double snap_m = snap_of(shape);
   std::vector<Eigen::Index> nodes;
   if (fixation.shape == RegionShape::vertex && std::holds_alternative<Solid>(shape)) {
     const int nearest = nearest_corner(mesh, fixation.at_m);
@@ -165,7 +174,7 @@ std::vector<Eigen::Index> selected_nodes(const Fixation& fixation, const TetMesh
     return nodes;
   }
   for (Eigen::Index node = 0; node < mesh.nodes_m.rows(); ++node) {
-    if (selects_node(fixation, mesh.nodes_m.row(node).transpose(), body)) {
+    if (selects_node(fixation, mesh.nodes_m.row(node).transpose(), body, snap_m)) {
       nodes.push_back(node);
     }
   }
@@ -237,8 +246,8 @@ std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh
 SurfaceRegion region_of(const Fixation& fixation, const TetMesh& mesh, const Shape& shape) {
   const bool is_point = fixation.shape == RegionShape::vertex;
   return {nodes_of(fixation, mesh, shape),
-          [fixation, is_point, body = bounds(shape)](const Vec3& at_m) {
-            return !is_point && selects_node(fixation, at_m, body);
+          [fixation, is_point, body = bounds(shape), snap_m = snap_of(shape)](const Vec3& at_m) {
+            return !is_point && selects_node(fixation, at_m, body, snap_m);
           }};
 }
 

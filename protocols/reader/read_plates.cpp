@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <variant>
 
 #include "core/error.hpp"
+#include "core/geometry/smooth_normals.hpp"
 #include "core/model/cubic_elements.hpp"
 #include "core/model/shells/shell_elements.hpp"
 #include "protocols/axes/axis.hpp"
@@ -113,6 +115,19 @@ core::Fixation read_fixation(MapReader& reader, bool is_box) {
   return fixation;
 }
 
+bool is_bent_sheet(const core::Shape& shape) {
+  return std::holds_alternative<core::Solid>(shape) && core::is_sheet(shape);
+}
+
+void refuse_settings_of_tetrahedra(MapReader& mesh, const std::string& why) {
+  for (const char* const other :
+       {"order", "max_tet_volume_m3", "radius_edge_ratio", "flattening", "accuracy"}) {
+    if (mesh.has(other)) {
+      mesh.reject(other, "is of tetrahedra, and " + why);
+    }
+  }
+}
+
 void read_mesh(MapReader& mesh, core::Meshing& meshing) {
   if (mesh.has("order")) {
     meshing.order = mesh.integer(
@@ -140,16 +155,12 @@ void read_mesh(MapReader& mesh, core::Meshing& meshing) {
   if (mesh.has("shell_width_m")) {
     meshing.shell_width_m = mesh.number(
         {"shell_width_m",
-         fmt::format("size_m only, at least {} times wider than thick: shell elements this wide, "
-                     "without any other setting; unset: tetrahedra",
+         fmt::format("size_m at least {} times wider than thick, or a surface with thickness_m: "
+                     "shell elements this wide, without any other setting; unset: tetrahedra, or a "
+                     "shell for each triangle",
                      core::least_width_to_thickness)},
         Range::positive(10.0));
-    for (const char* const other :
-         {"order", "max_tet_volume_m3", "radius_edge_ratio", "flattening", "accuracy"}) {
-      if (mesh.has(other)) {
-        mesh.reject(other, "is of tetrahedra, and shell_width_m takes shell elements");
-      }
-    }
+    refuse_settings_of_tetrahedra(mesh, "shell_width_m takes shell elements");
   }
   if (meshing.order != core::cubic_order && meshing.size.flattening > core::max_flattening) {
     mesh.reject("flattening", fmt::format("beyond {} is of order 3 alone: elements of lower order "
@@ -259,6 +270,7 @@ SurfaceSource repaired_surface_of(const SurfaceSource& file, const core::Triangl
 struct AskedSurface {
   std::string file;
   double metres_per_unit{};
+  std::optional<double> thickness_m{};  // of a sheet
   std::optional<RepairRequest> repair{};
 };
 
@@ -267,6 +279,18 @@ AskedSurface read_asked_surface(MapReader& reader) {
   asked.file = reader.text({"file", "STL, PLY, OFF or OBJ; path relative to the protocol"});
   asked.metres_per_unit = reader.number({"metres_per_unit", "0.001 for a file in millimetres"},
                                         Range::positive(1000.0));
+  if (reader.has("thickness_m")) {
+    asked.thickness_m = reader.number(
+        {"thickness_m",
+         fmt::format("the surface is the middle of a sheet this thick, open or closed, of shell "
+                     "elements; smooth but at edges at which it turns by more than {:.0f} degrees; "
+                     "unset: it encloses a solid",
+                     core::SmoothNormals::sharp_above_rad * 180.0 / std::numbers::pi)},
+        Range::positive(0.1));
+    reader.refuse("repair",
+                  "makes closed surfaces of solids, and thickness_m takes a surface as it is");
+    return asked;
+  }
   reader.map(
       {"repair",
        "makes of a surface that encloses no body one that does, as `tapstudy repair`; check, "
@@ -304,7 +328,7 @@ core::TriangleSurface surface_asked_for(const AskedSurface& asked, const Surface
 // Problems of the surface itself are reported at its key; reading then continues.
 core::Shape read_surface_shape(MapReader& plate, const SurfaceFiles& files, Protocol& protocol) {
   core::Shape shape = core::Box{core::Vec3::Constant(10.0)};  // placeholder until read
-  plate.map({"surface", "closed surface from a file, instead of a box"}, Presence::required,
+  plate.map({"surface", "surface from a file, instead of a box"}, Presence::required,
             [&](MapReader& reader) {
               const std::size_t earlier_problems = reader.problems_in_file();
               const AskedSurface asked = read_asked_surface(reader);
@@ -318,7 +342,9 @@ core::Shape read_surface_shape(MapReader& plate, const SurfaceFiles& files, Prot
                 for (auto point : surface.points_m.rowwise()) {
                   point = (pose * point.transpose()).transpose().eval();
                 }
-                shape = solid_of(std::move(surface), asked.file, asked.metres_per_unit);
+                shape = asked.thickness_m
+                            ? checked_sheet(std::move(surface), *asked.thickness_m)
+                            : solid_of(std::move(surface), asked.file, asked.metres_per_unit);
               } catch (const core::InvalidInput& error) {
                 reader.reject("file", error.what());
               }
@@ -365,7 +391,7 @@ void read_own_points(MapReader& reader, const Protocol& protocol, Plate& plate) 
 void read_plates(MapReader& top, Protocol& protocol, const SurfaceFiles& files,
                  const EarlierDefaults& defaults) {
   top.each(
-      {"plates", "named bodies, each a box or a closed surface, with mesh and boundary conditions"},
+      {"plates", "named bodies, each a box or a surface, with mesh and boundary conditions"},
       Presence::required, [&](const std::string& name, MapReader& reader) {
         Plate plate;
         plate.stated_at = reader.stated_at();
@@ -380,7 +406,15 @@ void read_plates(MapReader& top, Protocol& protocol, const SurfaceFiles& files,
              "settings of the tetrahedral mesh; auto: order and size are chosen for a tenth of the "
              "smallest difference between the frequencies of the study's stimuli, at most 2 %"},
             Presence::optional, "auto", [&] { plate.mesh.is_automatic = true; },
-            [&](MapReader& mesh) { read_mesh(mesh, plate.mesh); });
+            [&](MapReader& mesh) {
+              read_mesh(mesh, plate.mesh);
+              if (is_bent_sheet(plate.shape)) {
+                refuse_settings_of_tetrahedra(mesh, "the surface has a thickness_m");
+              }
+            });
+        if (is_bent_sheet(plate.shape) && !plate.mesh.is_automatic && !plate.mesh.shell_width_m) {
+          plate.mesh.shell_width_m = core::widest_shells_m(plate.shape);
+        }
         reader.list({"fixations", "regions that are held; an empty list: none"}, Presence::required,
                     [&](MapReader& fixation) {
                       plate.fixations.push_back(read_fixation(fixation, is_box));

@@ -2,6 +2,7 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
@@ -16,7 +17,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "core/model/shape/shape.hpp"
+#include "core/model/shells/sheet_body.hpp"
 #include "protocols/surface/flat_triangle.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -75,7 +76,9 @@ std::map<Edge, std::vector<int>> triangles_along(const TriangleSurface& surface)
   return along;
 }
 
-void check_edges(const TriangleSurface& surface,
+enum class Rims { closed, open };
+
+void check_edges(const TriangleSurface& surface, Rims rims,
                  const std::map<Edge, std::vector<int>>& triangles_along_edge) {
   for (const auto& [edge, triangles] : triangles_along_edge) {
     const auto opposite = triangles_along_edge.find({edge.second, edge.first});
@@ -86,6 +89,9 @@ void check_edges(const TriangleSurface& surface,
     const std::string where = fmt::format("along the edge from {} to {}",
                                           place(surface, edge.first), place(surface, edge.second));
     if (triangles.size() + back == 1) {
+      if (rims == Rims::open) {
+        continue;
+      }
       throw SurfaceFault{"surface: it is open (has a hole) " + where};
     }
     if (triangles.size() + back == 2) {
@@ -164,10 +170,38 @@ void check_count(const TriangleSurface& surface) {
 void check_surface(const TriangleSurface& surface) {
   check_size(surface);
   check_areas(surface);
-  check_edges(surface, triangles_along(surface));
+  check_edges(surface, Rims::closed, triangles_along(surface));
   const Mesh mesh = mesh_of(surface);
   check_one_piece(surface, mesh);
   check_volume(surface, mesh);
   check_crossings(surface, mesh);
+}
+
+core::Solid checked_sheet(core::TriangleSurface middle, double thickness_m) {
+  if (middle.triangles.rows() > core::max_sheet_triangles) {
+    throw InvalidInput{fmt::format("surface: it has {} triangles (with thickness_m at most {})",
+                                   middle.triangles.rows(), core::max_sheet_triangles)};
+  }
+  check_size(middle);
+  check_areas(middle);
+  check_edges(middle, Rims::open, triangles_along(middle));
+  const Mesh mesh = mesh_of(middle);
+  check_one_piece(middle, mesh);
+  const double width_m = std::sqrt(pmp::area(mesh));
+  if (!(width_m >= least_sheet_width * thickness_m)) {
+    throw InvalidInput{
+        fmt::format("surface: the root of its area is {:.3g} m, less than {} times its thickness_m "
+                    "(such a body is "
+                    "a solid: give its closed surface, without thickness_m)",
+                    width_m, least_sheet_width)};
+  }
+  core::Solid body = core::sheet_body(std::move(middle), thickness_m);
+  try {
+    check_crossings(body.surface(), mesh_of(body.surface()));
+  } catch (const SurfaceFault& fault) {
+    throw InvalidInput{fmt::format(
+        "the faces of the sheet, half of thickness_m beside the surface: {}", fault.what())};
+  }
+  return body;
 }
 }  // namespace tapstudy::protocols

@@ -1,6 +1,7 @@
 #pragma once
 #include "core/error.hpp"
 #include "core/geometry/triangle_surface.hpp"
+#include "core/model/shape/shape.hpp"
 namespace tapstudy::protocols {
 // A fault that repair_surface may cure.
 class SurfaceFault : public core::InvalidInput {
@@ -24,4 +25,10 @@ void check_count(const core::TriangleSurface& surface);
 // Throws SurfaceFault, or InvalidInput for a wrong size, stating which condition is violated, and
 // where.
 void check_surface(const core::TriangleSurface& surface);
+
+// The sheet around a surface in its middle, which is as check_surface says, but for rims that may
+// be open. Throws InvalidInput, also where its faces run through themselves, or where it is less
+// than `least_sheet_width` times wider (the root of its area) than thick.
+inline constexpr double least_sheet_width = 20.0;
+core::Solid checked_sheet(core::TriangleSurface middle, double thickness_m);
 }  // namespace tapstudy::protocols

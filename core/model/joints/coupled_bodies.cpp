@@ -246,7 +246,6 @@ CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies, cons
   return system;
 }
 
-namespace {
 std::vector<Fixation> regions_of(std::size_t body, const Joints& joints) {
   std::vector<Fixation> regions;
   for (const JointSpring& spring : joints.springs) {
@@ -259,6 +258,7 @@ std::vector<Fixation> regions_of(std::size_t body, const Joints& joints) {
   return regions;
 }
 
+namespace {
 std::vector<DiscreteBody> all_discretised(const BodySpec& body, const ProgressHook& progress) {
   const Joints& joints = *body.joints;
   std::vector<DiscreteBody> all{

@@ -27,6 +27,9 @@ struct CoupledBodies {
 // lie on one another at once.
 CoupledBodies coupled(const Plate& plate, std::vector<DiscreteBody> bodies, const Joints& joints);
 
+// What joins a body, the one of this number, to others.
+std::vector<Fixation> regions_of(std::size_t body, const Joints& joints);
+
 // The modes of a body together with those that it touches (body.joints), and its own part of
 // their shapes. All bodies are one eigenproblem, not each one's modes coupled (component mode
 // synthesis, Craig & Bampton 1968): nothing is truncated, and the count of modes is proved as that

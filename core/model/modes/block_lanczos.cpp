@@ -193,7 +193,7 @@ RitzVectors eigenvectors_below_shift(const StiffnessAndMass& matrices, const Shi
                                      int count, const ProgressHook& progress) {
   const Index size = matrices.K.rows();
   const Index block = std::clamp<Index>(count, 2, max_block);
-  const Index most = std::min<Index>(size - block, 4 * Index{count} + 40 * block);
+  const Index most = std::min<Index>(size - block, 8 * Index{count} + 100 * block);
   const auto krylov = std::make_shared<BlockKrylov>(matrices, factor, block);
   Index next_look = Index{count} + 2 * block;
   while (krylov->size() + block <= most) {

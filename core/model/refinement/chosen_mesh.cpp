@@ -35,8 +35,7 @@ Meshing meshing_with(double edge_m, int order, const Shape& shape) {
 
 double first_edge_m(const Shape& shape) {
   if (is_sheet(shape)) {
-    const Vec3& size_m = std::get<Box>(shape).size_m;
-    return 0.5 * std::min(size_m.x(), size_m.y());
+    return widest_shells_m(shape);
   }
   const double volume_m3 = std::abs(core::volume_m3(shape));
   const double usual_m = edge_m(volume_m3 / tets_of_first_round);

@@ -28,6 +28,12 @@ Solid::Solid(TriangleSurface surface, std::string simplified_by)
   triangles_ = std::make_shared<const TriangleTree>(std::move(surface));
 }
 
+Solid::Solid(TriangleSurface faces, Sheet sheet) : Solid{std::move(faces)} {
+  sha256_ = core::sha256(
+      fmt::format("{} {} {:a}", sha256_, bytes_of(sheet.middle.points_m), sheet.thickness_m));
+  sheet_ = std::make_shared<const Sheet>(std::move(sheet));
+}
+
 Bounds bounds(const TriangleSurface& surface) {
   return {surface.points_m.colwise().minCoeff(), surface.points_m.colwise().maxCoeff()};
 }

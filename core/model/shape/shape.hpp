@@ -15,6 +15,12 @@ struct Box {
   Vec3 high_m() const { return {0.5 * size_m.x(), 0.5 * size_m.y(), 0.0}; }
 };
 
+// A sheet of equal thickness, by the surface in its middle, open or closed.
+struct Sheet {
+  TriangleSurface middle;
+  double thickness_m{};
+};
+
 // A solid bounded by a closed surface (see check_surface), with its collision tree. Copies share
 // the data.
 class Solid {
@@ -22,13 +28,17 @@ class Solid {
   // simplified_by: the command that makes a surface of fewer triangles of this one's file, for
   // errors; empty: none is known.
   explicit Solid(TriangleSurface surface, std::string simplified_by = {});
+  // Bounded by the faces and rims of a sheet (shells/sheet_body.hpp).
+  Solid(TriangleSurface faces, Sheet sheet);
   const std::string& simplified_by() const { return simplified_by_; }
+  const std::shared_ptr<const Sheet>& sheet() const { return sheet_; }  // nullptr: it is none
   const TriangleSurface& surface() const { return triangles_->surface(); }
   const std::shared_ptr<const TriangleTree>& triangles() const { return triangles_; }
   const std::string& sha256() const { return sha256_; }  // of its points and triangles
 
  private:
   std::shared_ptr<const TriangleTree> triangles_;
+  std::shared_ptr<const Sheet> sheet_;
   std::string sha256_;
   std::string simplified_by_;
 };

@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
+#include <utility>
 #include <vector>
 
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
+#include "core/model/shells/sheet_body.hpp"
 #include "core/model/shells/shell_element.hpp"
 #include "core/model/shells/shell_elements.hpp"
 #include "core/model/shells/triangulation.hpp"
@@ -14,69 +19,109 @@ namespace tapstudy::core {
 namespace {
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-// The height of a layer above the middle, of half of the thickness.
-constexpr double height_of(int layer) {
-  return layer - 1.0;
+// How a place's unknowns move its node on a layer along an axis.
+Eigen::Matrix<double, 1, shell_unknowns> motion_of(const Vec3& offset, int layer,
+                                                   Eigen::Index axis) {
+  Eigen::Matrix<double, 1, shell_unknowns> motion;
+  motion << Vec3::Unit(axis).transpose(),
+      height_of(layer) * offset.cross(Vec3::Unit(axis)).transpose();
+  return motion;
 }
 
-// What becomes of an unknown of a place once some of its nodes are held: a factor times an unknown
-// that is left, or nothing.
-struct Left {
-  int unknown{-1};
-  double factor{0.0};
-};
-
-// Of all unknowns of all places, in order.
+// The unknowns of all places that are left, in order, once nodes are held: of each place a basis of
+// its own unknowns' motions that the held nodes allow.
 class Supported {
  public:
-  Supported(const std::vector<bool>& held, Eigen::Index places) : held_{held} {
-    for (Eigen::Index place = 0; place < places; ++place) {
-      const int first = count_;
-      std::array<Left, shell_unknowns> unknowns;
-      for (int axis = 0; axis < 2; ++axis) {
-        leave(place, axis, unknowns.at(static_cast<std::size_t>(axis)),
-              unknowns.at(static_cast<std::size_t>(3 + axis)));
+  using Basis = Eigen::Matrix<double, shell_unknowns, Eigen::Dynamic>;
+
+  Supported(const std::vector<bool>& held, const Lattice& lattice)
+      : held_{held}, lattice_{lattice}, normals_(lattice.places_m.rows(), 3) {
+    for (Eigen::Index i = 0; i < lattice.triangles.rows(); ++i) {
+      for (Eigen::Index k = 0; k < lattice.triangles.cols(); ++k) {
+        normals_.row(lattice.triangles(i, k)) =
+            lattice.directors.row(i * lattice.triangles.cols() + k);
       }
-      if (held_layers(place, 2).empty()) {
-        unknowns[2] = {count_++, 1.0};
+    }
+    for (Eigen::Index place = 0; place < lattice.places_m.rows(); ++place) {
+      firsts_.push_back(count_);
+      bases_.push_back(basis_of(place));
+      if (bases_.back().cols() > 0) {
+        first_of_place_.push_back(count_);
+        count_ += static_cast<int>(bases_.back().cols());
       }
-      if (count_ > first) {
-        first_of_place_.push_back(first);
-      }
-      all_.insert(all_.end(), unknowns.begin(), unknowns.end());
     }
     first_of_place_.push_back(count_);
   }
   int count() const { return count_; }
   const std::vector<int>& first_of_place() const { return first_of_place_; }
-  const Left& of(Eigen::Index place, int unknown) const {
-    return all_.at(static_cast<std::size_t>(shell_unknowns * place + unknown));
-  }
+  int first(Eigen::Index place) const { return firsts_[static_cast<std::size_t>(place)]; }
+  const Basis& basis(Eigen::Index place) const { return bases_[static_cast<std::size_t>(place)]; }
 
  private:
-  std::vector<int> held_layers(Eigen::Index place, int axis) const {
-    std::vector<int> layers_held;
+  using Row = Eigen::Matrix<double, 1, shell_unknowns>;
+
+  bool is_folded(Eigen::Index place) const {
+    return lattice_.is_folded[static_cast<std::size_t>(place)];
+  }
+  // What the held nodes of a place allow no motion along; and turning about the normal, which moves
+  // nothing, and about the offset of a fold that is held on two layers.
+  std::vector<Row> prevented(Eigen::Index place) const {
+    const Vec3 offset = lattice_.offsets.row(place);
+    std::vector<Row> rows;
+    std::array<int, 3> layers_held{};
     for (int layer = 0; layer < layers; ++layer) {
-      if (held_.at(static_cast<std::size_t>(3 * node_at(place, layer) + axis))) {
-        layers_held.push_back(layer);
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        if (held_[static_cast<std::size_t>(3 * node_at(place, layer) + axis)]) {
+          rows.push_back(motion_of(offset, layer, axis));
+          ++layers_held.at(static_cast<std::size_t>(axis));
+        }
       }
     }
-    return layers_held;
-  }
-  // Where one layer at height h is held, the middle moves by -h times what bends.
-  void leave(Eigen::Index place, int axis, Left& middle, Left& bending) {
-    const std::vector<int> layers_held = held_layers(place, axis);
-    if (layers_held.empty()) {
-      middle = {count_++, 1.0};
-      bending = {count_++, 1.0};
-    } else if (layers_held.size() == 1) {
-      bending = {count_++, 1.0};
-      middle = {bending.unknown, -height_of(layers_held.front())};
+    const bool turns = !rows.empty() && std::ranges::max(layers_held) < 2;
+    if (!is_folded(place) || (!rows.empty() && !turns)) {
+      Row& about = rows.emplace_back(Row::Zero());
+      about.tail<3>() = is_folded(place) ? Eigen::RowVector3d{offset.normalized().transpose()}
+                                         : Eigen::RowVector3d{normals_.row(place)};
     }
+    return rows;
+  }
+  Basis basis_of(Eigen::Index place) const {
+    constexpr double rounding = 1e-12;
+    constexpr double hardly = 1e-3;  // squared: normals of a rim lie in its plane to a degree or so
+    const std::vector<Row> rows = prevented(place);
+    if (rows.empty()) {
+      return Basis::Identity(shell_unknowns, shell_unknowns);
+    }
+    if (rows.size() == 1 && !is_folded(place)) {
+      return tangential(normals_.row(place));
+    }
+    Eigen::Matrix<double, shell_unknowns, shell_unknowns> sum;
+    sum.setZero();
+    for (const Row& row : rows) {
+      sum += row.transpose() * row;
+    }
+    const EigenPairs pairs = symmetric_eigenpairs(sum);
+    const Basis allowed = pairs.vectors.leftCols((pairs.values.array() < hardly).count());
+    return (allowed.array().abs() < rounding).select(0.0, allowed);
+  }
+  // All motions of the middle, and turning about two directions across the normal, along axes of
+  // the frame where it is one.
+  static Basis tangential(const Vec3& normal) {
+    Eigen::Index least = 0;
+    normal.cwiseAbs().minCoeff(&least);
+    const Vec3 along = (Vec3::Unit(least) - normal[least] * normal).normalized();
+    Basis basis = Basis::Zero(shell_unknowns, 5);
+    basis.topLeftCorner<3, 3>().setIdentity();
+    basis.block<3, 1>(3, 3) = along;
+    basis.block<3, 1>(3, 4) = normal.cross(along);
+    return basis;
   }
 
   const std::vector<bool>& held_;
-  std::vector<Left> all_;
+  const Lattice& lattice_;
+  TriangleSurface::Points normals_;  // one of each place
+  std::vector<int> firsts_;
+  std::vector<Basis> bases_;
   std::vector<int> first_of_place_;
   int count_{0};
 };
@@ -87,59 +132,63 @@ SparseMatrix from_entries(const Entries& entries, Eigen::Index rows, Eigen::Inde
   return matrix;
 }
 
-// Displacements along x and y are those of the middle and, in proportion to the height, what bends.
-SparseMatrix displacements(const Supported& supported, Eigen::Index places) {
+SparseMatrix displacements(const Supported& supported, const Lattice& lattice) {
+  constexpr double rounding = 1e-12;
   Entries entries;
-  const auto add = [&](Eigen::Index row, const Left& left, double share) {
-    if (left.unknown >= 0 && share * left.factor != 0.0) {
-      entries.emplace_back(static_cast<int>(row), left.unknown, share * left.factor);
-    }
-  };
-  for (Eigen::Index place = 0; place < places; ++place) {
+  for (Eigen::Index place = 0; place < lattice.places_m.rows(); ++place) {
+    const Supported::Basis& basis = supported.basis(place);
     for (int layer = 0; layer < layers; ++layer) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const Eigen::Index row = 3 * node_at(place, layer) + axis;
-        add(row, supported.of(place, axis), 1.0);
-        if (axis < 2) {
-          add(row, supported.of(place, 3 + axis), height_of(layer));
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const Eigen::RowVectorXd row = motion_of(lattice.offsets.row(place), layer, axis) * basis;
+        for (Eigen::Index i = 0; i < row.size(); ++i) {
+          if (std::abs(row[i]) > rounding) {
+            entries.emplace_back(static_cast<int>(3 * node_at(place, layer) + axis),
+                                 supported.first(place) + static_cast<int>(i), row[i]);
+          }
         }
       }
     }
   }
-  return from_entries(entries, 3 * node_at(places, 0), supported.count());
+  return from_entries(entries, 3 * node_at(lattice.places_m.rows(), 0), supported.count());
 }
 
-// Adds a triangle's matrices to the lower triangles of those of what is left.
-void add_element(const ShellElements::Matrices& element, const std::vector<Left>& unknowns,
-                 Entries& stiffness, Entries& mass) {
-  for (std::size_t column = 0; column < unknowns.size(); ++column) {
-    const auto [b, share_b] = unknowns[column];
-    for (std::size_t row = 0; row < unknowns.size() && b >= 0; ++row) {
-      const auto [a, share_a] = unknowns[row];
-      if (a >= b && share_a * share_b != 0.0) {
-        const auto i = static_cast<Eigen::Index>(row);
-        const auto j = static_cast<Eigen::Index>(column);
-        stiffness.emplace_back(a, b, share_a * share_b * element.stiffness(i, j));
-        mass.emplace_back(a, b, share_a * share_b * element.mass(i, j));
+// Adds what of a triangle's matrix two of its places have to the lower triangle of what is left.
+void add_pair(const Eigen::MatrixXd& of_pair, int first_row, int first_column, Entries& entries) {
+  for (Eigen::Index column = 0; column < of_pair.cols(); ++column) {
+    for (Eigen::Index row = 0; row < of_pair.rows(); ++row) {
+      const int a = first_row + static_cast<int>(row);
+      const int b = first_column + static_cast<int>(column);
+      if (a >= b && of_pair(row, column) != 0.0) {
+        entries.emplace_back(a, b, of_pair(row, column));
       }
     }
   }
 }
 
-StiffnessAndMass assembled(const Triangulation& triangulation, const Lattice& lattice,
-                           const ShellElements& elements, const Supported& supported) {
+StiffnessAndMass assembled(const Lattice& lattice, const ShellElements& elements,
+                           const Supported& supported) {
   Entries stiffness;
   Entries mass;
+  const Eigen::Index count = lattice.triangles.cols();
   for (Eigen::Index triangle = 0; triangle < lattice.triangles.rows(); ++triangle) {
-    std::vector<Left> unknowns;
-    for (const int place : lattice.triangles.row(triangle)) {
-      for (int unknown = 0; unknown < shell_unknowns; ++unknown) {
-        unknowns.push_back(supported.of(place, unknown));
+    const auto places = lattice.triangles.row(triangle);
+    const auto element = elements.of(lattice.places_m(places, Eigen::all),
+                                     lattice.directors.middleRows(triangle * count, count));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = 0; j < count; ++j) {
+        const int row = supported.first(places[i]);
+        const int column = supported.first(places[j]);
+        const auto between = [&](const Eigen::MatrixXd& all) -> Eigen::MatrixXd {
+          return supported.basis(places[i]).transpose() *
+                 all.block<shell_unknowns, shell_unknowns>(shell_unknowns * i, shell_unknowns * j) *
+                 supported.basis(places[j]);
+        };
+        if (row >= column) {
+          add_pair(between(element.stiffness), row, column, stiffness);
+          add_pair(between(element.mass), row, column, mass);
+        }
       }
     }
-    add_element(
-        elements.of(triangulation.corners_m(triangulation.triangles.row(triangle), Eigen::all)),
-        unknowns, stiffness, mass);
   }
   return {from_entries(stiffness, supported.count(), supported.count()),
           from_entries(mass, supported.count(), supported.count()), supported.first_of_place()};
@@ -158,12 +207,69 @@ void add_springs_to(const std::vector<SpringSupport>& springs, DiscreteBody& bod
   const SparseMatrix left = body.displacement.transpose() * whole * body.displacement;
   body.matrices.K += SparseMatrix{left.triangularView<Eigen::Lower>()};
 }
+
+// The middle of a plate, or of a sheet whose triangles are divided to the width of the elements.
+MiddleSurface middle_of(const Plate& plate, const std::vector<Fixation>& regions) {
+  const double width_m = plate.mesh.shell_width_m.value();
+  if (const auto* const box = std::get_if<Box>(&plate.shape)) {
+    return {triangulated(*box, width_m, regions), {}};
+  }
+  return divided(middle_surface(std::get<Solid>(plate.shape).sheet()->middle), width_m,
+                 max_sheet_triangles);
+}
+
+// Without the points that are no corners of it.
+TriangleSurface corners_of_surface(const TetMesh& mesh) {
+  std::map<int, int> number_of;
+  for (const int node : mesh.surface.leftCols<3>().reshaped()) {
+    number_of.emplace(node, 0);
+  }
+  TriangleSurface surface;
+  surface.points_m.resize(static_cast<Eigen::Index>(number_of.size()), 3);
+  int count = 0;
+  for (auto& [node, number] : number_of) {
+    number = count++;
+    surface.points_m.row(number) = mesh.nodes_m.row(node);
+  }
+  surface.triangles =
+      mesh.surface.leftCols<3>().unaryExpr([&](int node) { return number_of.at(node); });
+  return surface;
+}
+
+double thickness_of(const Shape& shape) {
+  const auto* const box = std::get_if<Box>(&shape);
+  return box != nullptr ? box->size_m.z() : std::get<Solid>(shape).sheet()->thickness_m;
+}
 }  // namespace
 
 bool is_sheet(const Shape& shape) {
-  const auto* const box = std::get_if<Box>(&shape);
-  return box != nullptr &&
-         std::min(box->size_m.x(), box->size_m.y()) >= least_width_to_thickness * box->size_m.z();
+  if (const auto* const solid = std::get_if<Solid>(&shape)) {
+    return solid->sheet() != nullptr;
+  }
+  const Vec3& size_m = std::get<Box>(shape).size_m;
+  return std::min(size_m.x(), size_m.y()) >= least_width_to_thickness * size_m.z();
+}
+
+double widest_shells_m(const Shape& shape) {
+  if (const auto* const box = std::get_if<Box>(&shape)) {
+    return 0.5 * std::min(box->size_m.x(), box->size_m.y());
+  }
+  const TriangleSurface& middle = std::get<Solid>(shape).sheet()->middle;
+  double longest_m = 0.0;
+  for (const auto& triangle : middle.triangles.rowwise()) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      longest_m = std::max(
+          longest_m,
+          (middle.points_m.row(triangle[k]) - middle.points_m.row(triangle[(k + 1) % 3])).norm());
+    }
+  }
+  return longest_m;
+}
+
+Solid sheet_body(TriangleSurface middle, double thickness_m) {
+  const MiddleSurface surface = middle_surface(middle);
+  const TetMesh mesh = layered(lattice_on(CurvedTriangles{surface}, shell_order), thickness_m);
+  return {corners_of_surface(mesh), Sheet{std::move(middle), thickness_m}};
 }
 
 DiscreteBody shell_body(const Plate& plate, const Material& material, int order,
@@ -172,26 +278,25 @@ DiscreteBody shell_body(const Plate& plate, const Material& material, int order,
   if (!is_sheet(plate.shape)) {
     throw ModelError{fmt::format(
         "mesh.shell_width_m: shell elements are for plates of size_m that are at least {} times "
-        "wider than thick",
+        "wider than thick, and for surfaces with a thickness_m",
         least_width_to_thickness)};
   }
-  const Box& box = std::get<Box>(plate.shape);
   DiscreteBody body;
   Stopwatch watch;
   tell(progress, "meshing");
-  const Triangulation triangulation = triangulated(box, plate.mesh.shell_width_m.value(), regions);
-  const Lattice lattice = lattice_on(triangulation, order);
-  body.mesh = layered(lattice, box.low_m().z(), box.high_m().z());
+  const MiddleSurface middle = middle_of(plate, regions);
+  const Lattice lattice = lattice_on(CurvedTriangles{middle}, order);
+  body.mesh = layered(lattice, thickness_of(plate.shape));
   body.order = order;
   body.elements = static_cast<int>(lattice.triangles.rows());
   body.cost.mesh_s = watch.lap_s();
   tell(progress, fmt::format("assembling {} shell elements", body.elements));
   const std::vector<bool> held = constrained_dofs(body.mesh, plate.shape, plate.fixations);
   body.dofs = free_dofs(held);
-  const Supported supported{held, lattice.places_m.rows()};
+  const Supported supported{held, lattice};
   body.matrices =
-      assembled(triangulation, lattice, ShellElements{material, box.size_m.z(), order}, supported);
-  body.displacement = displacements(supported, lattice.places_m.rows());
+      assembled(lattice, ShellElements{material, thickness_of(plate.shape), order}, supported);
+  body.displacement = displacements(supported, lattice);
   const auto springs = spring_supports(body.mesh, plate.shape, plate.fixations);
   add_springs_to(springs, body);
   body.matrices.resisted_motions = RigidMotions{body.mesh}.resisted(body.dofs, springs);

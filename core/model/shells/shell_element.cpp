@@ -1,22 +1,24 @@
 #include "core/model/shells/shell_element.hpp"
 
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <array>
 #include <cmath>
 
 #include "core/algebra/lapack.hpp"
+#include "core/error.hpp"
 #include "core/model/elements/elastic_stiffness.hpp"
 namespace tapstudy::core {
 namespace {
-using Elasticity = Eigen::Matrix<double, 9, 9>;
-
 constexpr Eigen::Index pair_of(Eigen::Index i, Eigen::Index j) {
   return 3 * i + j;
 }
 
-// Without stress across the plate: C_ijkl - C_ij33 C_33kl / C_3333; and with the share of shear.
-Elasticity elasticity_of_plate(const Material& material) {
-  constexpr double share_of_shear = 5.0 / 6.0;
+Eigen::Matrix<double, 9, 9> elasticity_of(const Material& material) {
   const ElasticStiffness solid{material};
-  Elasticity elasticity;
+  Eigen::Matrix<double, 9, 9> elasticity;
   for (Eigen::Index j = 0; j < 3; ++j) {
     for (Eigen::Index l = 0; l < 3; ++l) {
       const Eigen::Matrix3d block =
@@ -26,15 +28,6 @@ Elasticity elasticity_of_plate(const Material& material) {
           elasticity(pair_of(i, j), pair_of(k, l)) = block(i, k);
         }
       }
-    }
-  }
-  constexpr Eigen::Index across = pair_of(2, 2);
-  elasticity -=
-      (elasticity.col(across) * elasticity.row(across) / elasticity(across, across)).eval();
-  for (const Eigen::Index axis : {Eigen::Index{0}, Eigen::Index{1}}) {
-    for (const Eigen::Index shear : {pair_of(axis, 2), pair_of(2, axis)}) {
-      elasticity.row(shear) *= std::sqrt(share_of_shear);
-      elasticity.col(shear) *= std::sqrt(share_of_shear);
     }
   }
   return elasticity;
@@ -56,164 +49,124 @@ Quadrature gauss_quadrature(int points) {
           pairs.vectors.row(0).array().square().matrix().transpose()};
 }
 
-struct Function {
-  double value{1.0};
-  double slope{0.0};
-};
-
-// The polynomial of degree `steps` that is 1 at l = steps / order and 0 at fewer steps.
-Function along(double l, int steps, int order) {
-  Function function;
-  for (int m = 0; m < steps; ++m) {
-    const double factor = (order * l - m) / (m + 1.0);
-    function.slope = function.slope * factor + function.value * order / (m + 1.0);
-    function.value *= factor;
-  }
-  return function;
-}
-
-struct Functions {
-  Eigen::VectorXd values;
-  std::array<Eigen::VectorXd, 3> slopes;  // by the barycentric coordinates
-};
-
-// Lagrange's on the lattice: products of one polynomial in each coordinate (Silvester 1969).
-Functions functions_at(const Eigen::Vector3d& l, const Lattice& lattice) {
-  const int order = lattice.order;
-  const Eigen::Index count = lattice.places_of_triangle();
-  Functions functions{Eigen::VectorXd(count),
-                      {Eigen::VectorXd(count), Eigen::VectorXd(count), Eigen::VectorXd(count)}};
-  for (int j = 0; j <= order; ++j) {
-    for (int i = 0; i <= order - j; ++i) {
-      const Function a = along(l[0], order - i - j, order);
-      const Function b = along(l[1], i, order);
-      const Function c = along(l[2], j, order);
-      const Eigen::Index column = lattice.column_of(i, j);
-      functions.values[column] = a.value * b.value * c.value;
-      functions.slopes[0][column] = a.slope * b.value * c.value;
-      functions.slopes[1][column] = a.value * b.slope * c.value;
-      functions.slopes[2][column] = a.value * b.value * c.slope;
-    }
-  }
-  return functions;
+// The strains 11, 22, 12, 13 and 23, twice those of shear, of a motion along `direction` whose size
+// has this gradient, both in the lamina's axes.
+Eigen::Matrix<double, 5, 1> strain_of(const Vec3& direction, const Vec3& gradient) {
+  Eigen::Matrix<double, 5, 1> strain;
+  strain << direction[0] * gradient[0], direction[1] * gradient[1],
+      direction[0] * gradient[1] + direction[1] * gradient[0],
+      direction[0] * gradient[2] + direction[2] * gradient[0],
+      direction[1] * gradient[2] + direction[2] * gradient[1];
+  return strain;
 }
 }  // namespace
 
-ShellElements::ShellElements(const Material& material, double thickness_m, int order)
-    : elasticity_pa_{elasticity_of_plate(material)},
-      density_kg_per_m3_{material.density_kg_per_m3},
-      thickness_m_{thickness_m},
-      integrals_{integrals_of(order)} {}
-
 // Gauss's points of a square, moved together towards one corner: one degree more.
-ShellElements::Integrals ShellElements::integrals_of(int order) {
-  const Quadrature quadrature = gauss_quadrature(order + 1);
-  const Lattice lattice{order, {}, {}};
-  const Eigen::Index count = lattice.places_of_triangle();
-  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(count, count);
-  Integrals integrals{zero, {zero, zero, zero}, {}};
-  integrals.slopes.fill({zero, zero, zero});
-  for (Eigen::Index s = 0; s < quadrature.at.size(); ++s) {
-    for (Eigen::Index r = 0; r < quadrature.at.size(); ++r) {
-      const double x = quadrature.at[s];
-      const double y = quadrature.at[r] * (1.0 - x);
-      const double weight = 2.0 * (1.0 - x) * quadrature.weights[s] * quadrature.weights[r];
-      const auto [values, slopes] = functions_at({1.0 - x - y, x, y}, lattice);
-      integrals.values += weight * values * values.transpose();
-      for (std::size_t i = 0; i < 3; ++i) {
-        integrals.slopes_by_values.at(i) += weight * slopes.at(i) * values.transpose();
-        for (std::size_t j = 0; j < 3; ++j) {
-          integrals.slopes.at(i).at(j) += weight * slopes.at(i) * slopes.at(j).transpose();
-        }
-      }
+ShellElements::ShellElements(const Material& material, double thickness_m, int order)
+    : elasticity_pa_{elasticity_of(material)},
+      density_kg_per_m3_{material.density_kg_per_m3},
+      thickness_m_{thickness_m} {
+  const auto [at, weights] = gauss_quadrature(order + 1);
+  for (Eigen::Index s = 0; s < at.size(); ++s) {
+    for (Eigen::Index r = 0; r < at.size(); ++r) {
+      const double x = at[s];
+      points_.push_back(
+          {2.0 * (1.0 - x) * weights[s] * weights[r], functions_at(x, at[r] * (1.0 - x), order)});
     }
   }
-  return integrals;
 }
 
-// Along which axis an unknown moves, and whether in proportion to the height over the middle.
-struct ShellElements::Motion {
-  Eigen::Index axis{};
-  bool is_bending{};
+// The surface at one height in a sheet: rows of `axes` are two directions along it and its normal,
+// of `slopes` the gradients of the two shares of corners and of the height, in half thicknesses.
+struct ShellElements::Lamina {
+  Eigen::Matrix3d axes;
+  Eigen::Matrix3d slopes;
+  double volume_m3;  // that the point of integration stands for
 };
 
-// The integrals through the thickness t: of 1 by 1, 1 by the slope 2 / t of the height over half of
-// t, and of this height and its slope by themselves.
-Eigen::MatrixXd ShellElements::stiffness_of(const Motion& a, const Motion& b,
-                                            const InPlane& integrals) const {
-  constexpr Eigen::Index z = 2;
-  const auto modulus_pa = [&](Eigen::Index i, Eigen::Index j) {
-    return elasticity_pa_(pair_of(a.axis, i), pair_of(b.axis, j));
+ShellElements::Lamina ShellElements::lamina_at(const Point& point, double height,
+                                               const TriangleSurface::Points& places_m,
+                                               const TriangleSurface::Points& directors) const {
+  const double half_m = 0.5 * thickness_m_;
+  const auto slope = [&](const Eigen::VectorXd& by) -> Vec3 {
+    return (places_m.transpose() * by + height * half_m * (directors.transpose() * by));
   };
-  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(integrals.values.rows(), integrals.values.cols());
-  for (std::size_t i = 0; i < 2; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (a.is_bending && !b.is_bending) {
-      block += 2.0 * modulus_pa(z, row) * integrals.slopes_by_values.at(i).transpose();
-    } else if (b.is_bending && !a.is_bending) {
-      block += 2.0 * modulus_pa(row, z) * integrals.slopes_by_values.at(i);
-    } else {
-      const double height_m = a.is_bending ? thickness_m_ / 3.0 : thickness_m_;
-      block += height_m * (modulus_pa(row, 0) * integrals.slopes.at(i).at(0) +
-                           modulus_pa(row, 1) * integrals.slopes.at(i).at(1));
-    }
+  Eigen::Matrix3d tangents;
+  tangents.col(0) = slope(point.functions.x_slopes);
+  tangents.col(1) = slope(point.functions.y_slopes);
+  tangents.col(2) = half_m * (directors.transpose() * point.functions.values);
+  Lamina lamina;
+  lamina.volume_m3 = 0.5 * point.weight * tangents.determinant();
+  if (!(lamina.volume_m3 > 0.0)) {
+    const Vec3 at_m = places_m.transpose() * point.functions.values;
+    throw ModelError{fmt::format(
+        "shells: at ({:.4g}, {:.4g}, {:.4g}) m the sheet is bent more tightly than its thickness "
+        "allows",
+        at_m.x(), at_m.y(), at_m.z())};
   }
-  if (a.is_bending && b.is_bending) {
-    block += 4.0 / thickness_m_ * modulus_pa(z, z) * integrals.values;
-  }
-  return block;
+  lamina.axes.row(0) = tangents.col(0).normalized().transpose();
+  lamina.axes.row(2) = tangents.col(0).cross(tangents.col(1)).normalized().transpose();
+  lamina.axes.row(1) = lamina.axes.row(2).cross(lamina.axes.row(0));
+  lamina.slopes = tangents.inverse();
+  return lamina;
 }
 
-ShellElements::InPlane ShellElements::in_plane(const Corners& corners_m) const {
-  const Eigen::RowVector2d to_second = corners_m.row(1) - corners_m.row(0);
-  const Eigen::RowVector2d to_third = corners_m.row(2) - corners_m.row(0);
-  const double twice_m2 = to_second[0] * to_third[1] - to_second[1] * to_third[0];
-  Corners gradients;  // of the barycentric coordinates
-  gradients << to_second[1] - to_third[1], to_third[0] - to_second[0],  //
-      to_third[1], -to_third[0],                                        //
-      -to_second[1], to_second[0];
-  gradients /= twice_m2;
-  const double area_m2 = 0.5 * twice_m2;
-  const Eigen::MatrixXd zero =
-      Eigen::MatrixXd::Zero(integrals_.values.rows(), integrals_.values.cols());
-  InPlane integrals{area_m2 * integrals_.values, {zero, zero}, {}};
-  integrals.slopes.fill({zero, zero});
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const double slope = area_m2 * gradients(static_cast<Eigen::Index>(i),  //
-                                               static_cast<Eigen::Index>(axis));
-      integrals.slopes_by_values.at(axis) += slope * integrals_.slopes_by_values.at(i);
-      for (std::size_t j = 0; j < 3; ++j) {
-        const auto row = static_cast<Eigen::Index>(j);
-        integrals.slopes.at(axis).at(0) +=
-            slope * gradients(row, 0) * integrals_.slopes.at(i).at(j);
-        integrals.slopes.at(axis).at(1) +=
-            slope * gradients(row, 1) * integrals_.slopes.at(i).at(j);
+// Without stress across the lamina, C_ijkl - C_ij33 C_33kl / C_3333, and with the share of shear.
+Eigen::Matrix<double, 5, 5> ShellElements::elasticity_in(const Eigen::Matrix3d& axes) const {
+  constexpr double share_of_shear = 5.0 / 6.0;
+  constexpr std::array<Eigen::Index, 5> strains{pair_of(0, 0), pair_of(1, 1), pair_of(0, 1),
+                                                pair_of(0, 2), pair_of(1, 2)};
+  constexpr Eigen::Index across = pair_of(2, 2);
+  Tensor turn;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      turn.row(pair_of(i, j)) =
+          (axes.row(i).transpose() * axes.row(j)).reshaped<Eigen::RowMajor>().transpose();
+    }
+  }
+  Tensor turned = turn * elasticity_pa_ * turn.transpose();
+  turned -= (turned.col(across) * turned.row(across) / turned(across, across)).eval();
+  Eigen::Matrix<double, 5, 5> elasticity = turned(strains, strains);
+  elasticity.bottomRows<2>() *= std::sqrt(share_of_shear);
+  elasticity.rightCols<2>() *= std::sqrt(share_of_shear);
+  return elasticity;
+}
+
+ShellElements::Matrices ShellElements::of(const TriangleSurface::Points& places_m,
+                                          const TriangleSurface::Points& directors) const {
+  const double gauss_height = 1.0 / std::sqrt(3.0);
+  const Eigen::Index count = places_m.rows();
+  const auto laminas = static_cast<Eigen::Index>(2 * points_.size());
+  Eigen::MatrixXd strains(5 * laminas, shell_unknowns * count);
+  Eigen::MatrixXd stresses(5 * laminas, shell_unknowns * count);
+  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(3 * laminas, shell_unknowns * count);
+  Eigen::Index row = 0;
+  for (const Point& point : points_) {
+    for (const double height : {-gauss_height, gauss_height}) {
+      const auto [axes, slopes, volume_m3] = lamina_at(point, height, places_m, directors);
+      auto strain = strains.middleRows<5>(5 * row);
+      auto motion = motions.middleRows<3>(3 * row);
+      const double root_mass = std::sqrt(density_kg_per_m3_ * volume_m3);
+      for (Eigen::Index place = 0; place < count; ++place) {
+        const double value = point.functions.values[place];
+        const Vec3 by_x{point.functions.x_slopes[place], point.functions.y_slopes[place], 0.0};
+        const Vec3 of_middle = axes * (slopes.transpose() * by_x);
+        const Vec3 of_turn =
+            axes * (slopes.transpose() * Vec3{height * by_x[0], height * by_x[1], value});
+        const Vec3 director = directors.row(place);
+        for (Eigen::Index axis = 0; axis < 3; ++axis) {
+          const Eigen::Index middle = shell_unknowns * place + axis;
+          const Vec3 beyond = Vec3::Unit(axis).cross(director);
+          strain.col(middle) = strain_of(axes.col(axis), of_middle);
+          strain.col(middle + 3) = strain_of(axes * beyond, of_turn);
+          motion(axis, middle) = root_mass * value;
+          motion.col(middle + 3) = root_mass * height * value * beyond;
+        }
       }
+      stresses.middleRows<5>(5 * row) = volume_m3 * elasticity_in(axes) * strain;
+      ++row;
     }
   }
-  return integrals;
-}
-
-ShellElements::Matrices ShellElements::of(const Corners& corners_m) const {
-  constexpr std::array<Motion, shell_unknowns> motions{
-      {{0, false}, {1, false}, {2, false}, {0, true}, {1, true}}};
-  const InPlane integrals = in_plane(corners_m);
-  const Eigen::Index count = integrals.values.rows();
-  const Eigen::MatrixXd zero =
-      Eigen::MatrixXd::Zero(shell_unknowns * count, shell_unknowns * count);
-  Matrices element{zero, zero};
-  const auto all_of = [count](std::size_t unknown) {
-    return Eigen::seqN(static_cast<Eigen::Index>(unknown), count, Eigen::fix<shell_unknowns>);
-  };
-  for (std::size_t a = 0; a < motions.size(); ++a) {
-    for (std::size_t b = 0; b < motions.size(); ++b) {
-      element.stiffness(all_of(a), all_of(b)) =
-          stiffness_of(motions.at(a), motions.at(b), integrals);
-    }
-    const double height_m = motions.at(a).is_bending ? thickness_m_ / 3.0 : thickness_m_;
-    element.mass(all_of(a), all_of(a)) = density_kg_per_m3_ * height_m * integrals.values;
-  }
-  return element;
+  return {strains.transpose() * stresses, motions.transpose() * motions};
 }
 }  // namespace tapstudy::core

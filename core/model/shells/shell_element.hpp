@@ -1,55 +1,51 @@
 #pragma once
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
 #include "core/model/elements/material.hpp"
+#include "core/model/shells/lagrange.hpp"
 #include "core/model/shells/triangulation.hpp"
 namespace tapstudy::core {
-// The unknowns of a shell at each place of its lattice: the displacement of the middle surface
-// along x, y and z, and what the upper surface's has beyond it along x and y. Displacements vary
-// linearly through the thickness, and along z not at all (Reissner 1945, Mindlin 1951, with the
-// motion in the plane): no stress across, and 5/6 of the energy of transverse shear, whose stress
-// is a parabola.
-inline constexpr int shell_unknowns = 5;
+// The unknowns of a shell at each place of its lattice: the displacement of its middle along x, y
+// and z, and by which vector it turns times half of its thickness; the upper face moves beyond the
+// middle by that vector's cross product with the normal. What turns about the normal moves nothing.
+inline constexpr int shell_unknowns = 6;
 
-// Flat triangles of polynomials of one order for all unknowns. From order 4 on these hold smooth
+// Degenerated solid elements (Ahmad, Irons & Zienkiewicz 1970, Analysis of thick and thin shell
+// structures by curved finite elements): triangles, flat or curved, of polynomials of one order for
+// places, normals and unknowns. Displacements vary linearly through the thickness; no stress across
+// it, and 5/6 of the energy of transverse shear, whose stress is a parabola: of a flat sheet
+// Reissner's and Mindlin's plate with the motion in its plane. From order 4 on these hold smooth
 // deflections whose shear vanishes, so that thin plates do not lock (Suri, Babuška & Schwab 1995,
-// Locking effects in the finite element approximation of plate models).
+// Locking effects in the finite element approximation of plate models). Motions of the rigid body
+// are without strain.
 class ShellElements {
  public:
   ShellElements(const Material& material, double thickness_m, int order);
 
-  // Of the unknowns of each place in turn; integrated exactly.
+  // Of the unknowns of each place in turn; of flat triangles integrated exactly.
   struct Matrices {
     Eigen::MatrixXd stiffness;  // N/m
     Eigen::MatrixXd mass;       // kg
   };
-  using Corners = Eigen::Matrix<double, 3, 2>;
-  Matrices of(const Corners& corners_m) const;
+  // Throws ModelError where the sheet is bent more tightly than its thickness allows.
+  Matrices of(const TriangleSurface::Points& places_m,
+              const TriangleSurface::Points& directors) const;
 
  private:
-  // Of the functions N of a triangle of area 1 and their derivatives by its barycentric
-  // coordinates: the integrals of N_a N_b, d_i N_a N_b and d_i N_a d_j N_b.
-  struct Integrals {
-    Eigen::MatrixXd values;
-    std::array<Eigen::MatrixXd, 3> slopes_by_values;
-    std::array<std::array<Eigen::MatrixXd, 3>, 3> slopes;
+  using Tensor = Eigen::Matrix<double, 9, 9>;  // C_ijkl, row 3 i + j, column 3 k + l
+  struct Point {
+    double weight;  // of a triangle's area of 1
+    Functions functions;
   };
-  static Integrals integrals_of(int order);
-  // Of one triangle, its derivatives along x and y.
-  struct InPlane {
-    Eigen::MatrixXd values;
-    std::array<Eigen::MatrixXd, 2> slopes_by_values;
-    std::array<std::array<Eigen::MatrixXd, 2>, 2> slopes;
-  };
-  InPlane in_plane(const Corners& corners_m) const;
-  struct Motion;
-  Eigen::MatrixXd stiffness_of(const Motion& a, const Motion& b, const InPlane& integrals) const;
+  struct Lamina;
+  Lamina lamina_at(const Point& point, double height, const TriangleSurface::Points& places_m,
+                   const TriangleSurface::Points& directors) const;
+  Eigen::Matrix<double, 5, 5> elasticity_in(const Eigen::Matrix3d& axes) const;
 
-  Eigen::Matrix<double, 9, 9> elasticity_pa_;  // C_ijkl, row 3 i + j, column 3 k + l
+  Tensor elasticity_pa_;
   double density_kg_per_m3_;
   double thickness_m_;
-  Integrals integrals_;
+  std::vector<Point> points_;
 };
 }  // namespace tapstudy::core

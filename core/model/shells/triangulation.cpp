@@ -1,6 +1,10 @@
 #include "core/model/shells/triangulation.hpp"
 
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,9 +13,11 @@
 #include <numbers>
 #include <utility>
 
+#include "core/error.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 namespace tapstudy::core {
-Triangulation triangulated(const Box& plate, double width_m, const std::vector<Fixation>& regions) {
+TriangleSurface triangulated(const Box& plate, double width_m,
+                             const std::vector<Fixation>& regions) {
   const Box thick{{plate.size_m.x(), plate.size_m.y(), width_m}};
   std::vector<Vec3> points_m = points_to_mesh(regions, plate);
   for (Vec3& point_m : points_m) {
@@ -22,7 +28,7 @@ Triangulation triangulated(const Box& plate, double width_m, const std::vector<F
   const TetMesh mesh = mesh_shape(thick, size, points_m);
   const double snap_m = bounds(Shape{thick}).snap_m();
   const auto is_above = [&](int node) { return std::abs(mesh.nodes_m(node, 2)) <= snap_m; };
-  Triangulation result;
+  TriangleSurface result;
   std::map<int, int> number_of;
   std::vector<std::array<int, 3>> triangles;
   for (const auto& row : mesh.surface.rowwise()) {
@@ -33,9 +39,10 @@ Triangulation triangulated(const Box& plate, double width_m, const std::vector<F
       });
     }
   }
-  result.corners_m.resize(static_cast<Eigen::Index>(number_of.size()), 2);
+  result.points_m.resize(static_cast<Eigen::Index>(number_of.size()), 3);
   for (const auto& [node, number] : number_of) {
-    result.corners_m.row(number) = mesh.nodes_m.row(node).head<2>();
+    result.points_m.row(number) << mesh.nodes_m(node, 0), mesh.nodes_m(node, 1),
+        -0.5 * plate.size_m.z();
   }
   result.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -51,13 +58,11 @@ using Steps = std::array<int, 3>;  // towards each corner; their sum is the orde
 // Numbers the places of a lattice: those of corners first.
 class Numbering {
  public:
-  Numbering(const Triangulation& triangulation, int order)
-      : triangulation_{triangulation},
-        order_{order},
-        next_{static_cast<int>(triangulation.corners_m.rows())} {}
+  Numbering(const TriangleSurface& facets, int order)
+      : facets_{facets}, order_{order}, next_{static_cast<int>(facets.points_m.rows())} {}
 
   int place(Eigen::Index triangle, const Steps& steps) {
-    const auto corners = triangulation_.triangles.row(triangle);
+    const auto corners = facets_.triangles.row(triangle);
     std::array<int, 2> ends{-1, -1};  // of the edge on which it lies
     int along = 0;                    // steps towards the end of the higher number
     int away_from = 0;                // corners
@@ -84,40 +89,139 @@ class Numbering {
   int count() const { return next_; }
 
  private:
-  const Triangulation& triangulation_;
+  const TriangleSurface& facets_;
   int order_;
   int next_;
   std::map<std::array<int, 2>, int> first_on_;
 };
+// The middle's normals at the places of triangles, one for all that are joined smoothly there.
+class Directors {
+ public:
+  Directors(const CurvedTriangles& middle, const Lattice& lattice)
+      : middle_{middle}, lattice_{lattice}, columns_{lattice.triangles.cols()} {
+    for (int j = 0; j <= lattice.order; ++j) {
+      for (int i = 0; i <= lattice.order - j; ++i) {
+        steps_.push_back({lattice.order - i - j, i, j});
+        functions_.push_back(functions_at(static_cast<double>(i) / lattice.order,
+                                          static_cast<double>(j) / lattice.order, lattice.order));
+      }
+    }
+    for (Eigen::Index triangle = 0; triangle < lattice.triangles.rows(); ++triangle) {
+      for (Eigen::Index column = 0; column < columns_; ++column) {
+        joined_.try_emplace(key_of(triangle, column), Vec3::Zero()).first->second +=
+            own_normal(triangle, column);
+      }
+    }
+  }
+
+  TriangleSurface::Points of_triangles() const {
+    TriangleSurface::Points directors(lattice_.triangles.size(), 3);
+    for (Eigen::Index triangle = 0; triangle < lattice_.triangles.rows(); ++triangle) {
+      for (Eigen::Index column = 0; column < columns_; ++column) {
+        directors.row(triangle * columns_ + column) =
+            joined_.at(key_of(triangle, column)).normalized().transpose();
+      }
+    }
+    return directors;
+  }
+  // Of least length among those that are 1 along each normal of the place.
+  void set_offsets(Lattice& lattice) const {
+    constexpr double longest = 6.0;  // beyond, a sheet is folded back on itself
+    constexpr double missed = 0.1;   // of half of the thickness
+    std::map<int, std::vector<Vec3>> normals_of;
+    for (const auto& [key, sum] : joined_) {
+      normals_of[key[0]].push_back(sum.normalized());
+    }
+    lattice.offsets.resize(lattice.places_m.rows(), 3);
+    for (const auto& [place, normals] : normals_of) {
+      lattice.is_folded.push_back(normals.size() > 1);
+      Eigen::MatrixX3d rows(static_cast<Eigen::Index>(normals.size()), 3);
+      for (std::size_t i = 0; i < normals.size(); ++i) {
+        rows.row(static_cast<Eigen::Index>(i)) = normals[i].transpose();
+      }
+      const Vec3 offset = normals.size() == 1 ? normals.front() : meeting(rows);
+      const bool do_meet = ((rows * offset).array() - 1.0).abs().maxCoeff() <= missed;
+      if (!do_meet || offset.norm() > longest) {
+        const Vec3 at_m = lattice.places_m.row(place);
+        throw ModelError{
+            fmt::format("shells: at ({:.4g}, {:.4g}, {:.4g}) m the sheet is folded back on itself",
+                        at_m.x(), at_m.y(), at_m.z())};
+      }
+      lattice.offsets.row(place) = offset.transpose();
+    }
+  }
+
+ private:
+  using Key = std::array<int, 2>;  // place, and which of its normals
+
+  static Vec3 meeting(const Eigen::MatrixX3d& normals) {
+    constexpr double told = 0.1;  // nearly equal normals tell one direction
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> system(normals.rows(), 3);
+    system.setThreshold(told);
+    return system.compute(normals).solve(Eigen::VectorXd::Ones(normals.rows()));
+  }
+  Key key_of(Eigen::Index triangle, Eigen::Index column) const {
+    constexpr int only = 0;
+    const Steps& steps = steps_.at(static_cast<std::size_t>(column));
+    const int place = lattice_.triangles(triangle, column);
+    const auto zeros = std::ranges::count(steps, 0);
+    if (zeros == 2) {
+      const auto corner = std::ranges::max_element(steps) - steps.begin();
+      return {place, middle_.fan(triangle, static_cast<int>(corner))};
+    }
+    if (zeros == 0) {
+      return {place, only};
+    }
+    const auto opposite = std::ranges::find(steps, 0) - steps.begin();
+    const auto facet = middle_.surface().facets.triangles.row(triangle);
+    const bool is_smooth = middle_.is_smooth(facet[(opposite + 1) % 3], facet[(opposite + 2) % 3]);
+    return {place, is_smooth ? only : static_cast<int>(triangle)};
+  }
+  Vec3 own_normal(Eigen::Index triangle, Eigen::Index column) const {
+    const Functions& functions = functions_.at(static_cast<std::size_t>(column));
+    TriangleSurface::Points from_first_m =
+        lattice_.places_m(lattice_.triangles.row(triangle), Eigen::all);
+    from_first_m.rowwise() -= from_first_m.row(0).eval();
+    const Vec3 along_x = from_first_m.transpose() * functions.x_slopes;
+    const Vec3 along_y = from_first_m.transpose() * functions.y_slopes;
+    return along_x.cross(along_y).normalized();
+  }
+
+  const CurvedTriangles& middle_;
+  const Lattice& lattice_;
+  Eigen::Index columns_;
+  std::vector<Steps> steps_;  // of each column
+  std::vector<Functions> functions_;
+  std::map<Key, Vec3> joined_;
+};
 }  // namespace
 
-Lattice lattice_on(const Triangulation& triangulation, int order) {
-  Numbering numbering{triangulation, order};
-  Lattice lattice{order, {}, {}};
-  lattice.triangles.resize(triangulation.triangles.rows(), lattice.places_of_triangle());
-  for (Eigen::Index triangle = 0; triangle < lattice.triangles.rows(); ++triangle) {
-    for (int j = 0; j <= order; ++j) {
-      for (int i = 0; i <= order - j; ++i) {
-        lattice.triangles(triangle, lattice.column_of(i, j)) =
-            numbering.place(triangle, {order - i - j, i, j});
+Lattice lattice_on(const CurvedTriangles& middle, int order) {
+  const TriangleSurface& facets = middle.surface().facets;
+  Numbering numbering{facets, order};
+  Lattice lattice{order, {}, {}, {}, {}, {}};
+  lattice.triangles.resize(facets.triangles.rows(), places_of_triangle(order));
+  const auto for_each_place = [&](const auto& act) {
+    for (Eigen::Index triangle = 0; triangle < lattice.triangles.rows(); ++triangle) {
+      for (int j = 0; j <= order; ++j) {
+        for (int i = 0; i <= order - j; ++i) {
+          act(triangle, i, j, column_of(order, i, j));
+        }
       }
     }
-  }
-  lattice.places_m.resize(numbering.count(), 2);
-  for (Eigen::Index triangle = 0; triangle < lattice.triangles.rows(); ++triangle) {
-    const Eigen::Matrix<double, 3, 2> corners_m =
-        triangulation.corners_m(triangulation.triangles.row(triangle), Eigen::all);
-    for (int j = 0; j <= order; ++j) {
-      for (int i = 0; i <= order - j; ++i) {
-        const Eigen::RowVector3d shares =
-            Eigen::RowVector3d{static_cast<double>(order - i - j), static_cast<double>(i),
-                               static_cast<double>(j)} /
-            order;
-        lattice.places_m.row(lattice.triangles(triangle, lattice.column_of(i, j))) =
-            shares * corners_m;
-      }
-    }
-  }
+  };
+  for_each_place([&](Eigen::Index triangle, int i, int j, Eigen::Index column) {
+    lattice.triangles(triangle, column) = numbering.place(triangle, {order - i - j, i, j});
+  });
+  lattice.places_m.resize(numbering.count(), 3);
+  for_each_place([&](Eigen::Index triangle, int i, int j, Eigen::Index column) {
+    lattice.places_m.row(lattice.triangles(triangle, column)) =
+        middle.at_m(triangle, static_cast<double>(i) / order, static_cast<double>(j) / order)
+            .transpose();
+  });
+  const Directors directors{middle, lattice};
+  lattice.directors = directors.of_triangles();
+  directors.set_offsets(lattice);
   return lattice;
 }
 
@@ -165,7 +269,7 @@ class Layering {
 
  private:
   int node(const Corner& at) const {
-    const int place = lattice_.triangles(triangle_, lattice_.column_of(at.i, at.j));
+    const int place = lattice_.triangles(triangle_, column_of(lattice_.order, at.i, at.j));
     return static_cast<int>(node_at(place, at.layer));
   }
   static Corner at_top(Corner at) {
@@ -250,8 +354,8 @@ class Layering {
 // The edges that one triangle alone has: triangle, and which of its edges.
 std::vector<std::pair<Eigen::Index, int>> rim_of(const Lattice& lattice) {
   const int order = lattice.order;
-  const std::array<Eigen::Index, 3> corners{lattice.column_of(0, 0), lattice.column_of(order, 0),
-                                            lattice.column_of(0, order)};
+  const std::array<Eigen::Index, 3> corners{column_of(order, 0, 0), column_of(order, order, 0),
+                                            column_of(order, 0, order)};
   std::map<std::pair<int, int>, std::pair<Eigen::Index, int>> rim;
   for (Eigen::Index triangle = 0; triangle < lattice.triangles.rows(); ++triangle) {
     for (int edge = 0; edge < 3; ++edge) {
@@ -270,15 +374,14 @@ std::vector<std::pair<Eigen::Index, int>> rim_of(const Lattice& lattice) {
 }
 }  // namespace
 
-TetMesh layered(const Lattice& lattice, double low_z_m, double high_z_m) {
+TetMesh layered(const Lattice& lattice, double thickness_m) {
   TetMesh mesh;
   mesh.nodes_m.resize(layers * lattice.places_m.rows(), 3);
   for (Eigen::Index place = 0; place < lattice.places_m.rows(); ++place) {
     for (int layer = 0; layer < layers; ++layer) {
-      mesh.nodes_m.row(node_at(place, layer)) << lattice.places_m.row(place),
-          layer == top      ? high_z_m
-          : layer == bottom ? low_z_m
-                            : 0.5 * (low_z_m + high_z_m);
+      mesh.nodes_m.row(node_at(place, layer)) =
+          lattice.places_m.row(place) +
+          0.5 * thickness_m * height_of(layer) * lattice.offsets.row(place);
     }
   }
   Layering layering{lattice};

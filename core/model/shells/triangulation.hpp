@@ -4,37 +4,41 @@
 
 #include "core/model/fixation.hpp"
 #include "core/model/mesh/tet_mesh.hpp"
+#include "core/model/shells/lagrange.hpp"
+#include "core/model/shells/middle_surface.hpp"
 namespace tapstudy::core {
-// A rectangle as triangles, counter-clockwise.
-struct Triangulation {
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> corners_m;
-  Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor> triangles;
-};
-
-// Of a plate seen from above: the upper face of TetGen's mesh of a plate as thick as the triangles
-// are wide, so that they are well shaped, and smaller only round the places that these regions
-// need. Throws ModelError as mesh_shape.
-Triangulation triangulated(const Box& plate, double width_m, const std::vector<Fixation>& regions);
+// The middle of a plate as triangles, counter-clockwise from above: the upper face of TetGen's mesh
+// of a plate as thick as the triangles are wide, so that they are well shaped, and smaller only
+// round the places that these regions need. Throws ModelError as mesh_shape.
+TriangleSurface triangulated(const Box& plate, double width_m,
+                             const std::vector<Fixation>& regions);
 
 // The places at which polynomials of an order are given, evenly spaced on each triangle and shared
-// by neighbours. Place (i, j) of a triangle, i steps towards its second corner and j towards its
-// third, is in column `column_of(i, j)` of its row.
+// by neighbours.
 struct Lattice {
   int order{};  // even
-  Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> places_m;
-  TetMesh::Indices triangles;
-  Eigen::Index column_of(Eigen::Index i, Eigen::Index j) const {
-    return j * (order + 1) - j * (j - 1) / 2 + i;
-  }
-  Eigen::Index places_of_triangle() const { return column_of(0, order) + 1; }
+  TriangleSurface::Points places_m;
+  TetMesh::Indices triangles;  // their places, in the order of column_of
+  // The unit normal of a triangle at each of its places, one triangle after the other; neighbours
+  // that are joined smoothly have one.
+  TriangleSurface::Points directors;
+  // Of each place, from the middle to the upper face, in half thicknesses: along the normal; at a
+  // fold, to where the faces meet.
+  TriangleSurface::Points offsets;
+  std::vector<bool> is_folded;  // of each place: it has several normals
 };
-Lattice lattice_on(const Triangulation& triangulation, int order);
+// Throws ModelError where a fold is so sharp that its faces hardly meet.
+Lattice lattice_on(const CurvedTriangles& middle, int order);
 
 // The layers in which a plate's mesh has a node at each place of the lattice: bottom, middle, top.
 inline constexpr int layers = 3;
 constexpr Eigen::Index node_at(Eigen::Index place, int layer) {
   return layers * place + layer;
 }
-// The same plate as quadratic tetrahedra on these nodes: what others see of its shapes.
-TetMesh layered(const Lattice& lattice, double low_z_m, double high_z_m);
+// Above the middle, in half thicknesses.
+constexpr double height_of(int layer) {
+  return layer - 1.0;
+}
+// The same body as quadratic tetrahedra on these nodes: what others see of its shapes.
+TetMesh layered(const Lattice& lattice, double thickness_m);
 }  // namespace tapstudy::core

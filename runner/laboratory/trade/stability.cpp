@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "core/error.hpp"
 #include "core/haptics/haptic_state.hpp"
 #include "core/model/shape/shape.hpp"
+#include "core/model/shells/shell_elements.hpp"
 #include "core/techniques/technique.hpp"
 #include "device/hand/penalty_limit.hpp"
 #include "runner/laboratory/trade/rendering_accuracy.hpp"
@@ -185,6 +187,26 @@ void play(const Stage& stage, const core::VibratingPlate* plate, StabilityCase& 
   played.words += has_missed ? "the hand did not touch the body" : described(seen);
 }
 
+// That bend a plate, by Weyl's law: A k² / 4 pi less the rim's share of held ones, P k / 4 pi, k
+// being the number of waves in bending at the band's limit; 0 where these tell nothing.
+double modes_expected(const core::PlateSpec& plate) {
+  const auto* const box = std::get_if<core::Box>(&plate.shape);
+  const core::Material& material = plate.material;
+  if (box == nullptr || material.orthotropy || plate.joints) {
+    return 0.0;
+  }
+  const core::Vec3& size_m = box->size_m;
+  const double rigidity_n_m = material.youngs_modulus_pa * std::pow(size_m.z(), 3) /
+                              (12.0 * (1.0 - std::pow(material.poissons_ratio, 2)));
+  const double k2 = 2.0 * std::numbers::pi * plate.band_limit_hz *
+                    std::sqrt(material.density_kg_per_m3 * size_m.z() / rigidity_n_m);
+  const bool is_thin = k2 * size_m.z() * size_m.z() < 1.0;
+  const double rim_m = 2.0 * (size_m.x() + size_m.y());
+  const double count =
+      (size_m.x() * size_m.y() * k2 - rim_m * std::sqrt(k2)) / (4.0 * std::numbers::pi);
+  return is_thin ? std::max(0.0, count) : 0.0;
+}
+
 StabilityCase play(const std::string& property, double value, const Stage& stage,
                    const core::ProgressHook& progress) {
   StabilityCase played{property, value, Outcome::refused, {}};
@@ -195,9 +217,13 @@ StabilityCase play(const std::string& property, double value, const Stage& stage
     }
     core::PlateModel built = core::build_plate_model(stage.plate, progress);
     played.words = described(built);
-    if (built.modal.frequency_hz.size() == 0) {
+    const auto found = static_cast<double>(built.modal.frequency_hz.size());
+    const double expected = modes_expected(stage.plate);
+    if (found == 0.0 || found < 0.5 * expected) {
       played.outcome = Outcome::untested;
-      played.words += fmt::format("none below {:g} Hz", stage.plate.band_limit_hz);
+      played.words += found == 0.0 ? fmt::format("none below {:g} Hz", stage.plate.band_limit_hz)
+                                   : fmt::format("where about {:.0f} are expected below {:g} Hz",
+                                                 expected, stage.plate.band_limit_hz);
       return played;
     }
     if (stage.damping_ratio) {
@@ -240,12 +266,16 @@ std::vector<Extreme> of_the_material(const core::Material& material) {
   return extremes;
 }
 
+// Sheets have shells: flat tetrahedra bend too stiffly, and most modes would not be in the band.
 void make_thickness(Stage& stage, double to_width) {
   if (auto* box = std::get_if<core::Box>(&stage.plate.shape)) {
+    constexpr double part_of_width = 0.25;
     box->size_m.z() = to_width * box->size_m.x();
     stage.plate.mesh.size.max_tet_volume_m3 = box->size_m.prod() / tets_at_most;
-    // thin sheets use flattened elements, at most ten to one
-    stage.plate.mesh.size.flattening = std::clamp(0.1 / to_width, 1.0, 10.0);
+    stage.plate.mesh.shell_width_m.reset();
+    if (core::is_sheet(stage.plate.shape)) {
+      stage.plate.mesh.shell_width_m = part_of_width * std::min(box->size_m.x(), box->size_m.y());
+    }
   }
 }
 

@@ -1,0 +1,449 @@
+// Sheets by the surface in their middle, against theory, CalculiX and tetrahedra.
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/model/discrete_body.hpp"
+#include "core/model/joints/joints.hpp"
+#include "core/model/modes/modal_solver.hpp"
+#include "core/model/plate_model.hpp"
+#include "core/model/shells/sheet_body.hpp"
+#include "core/model/shells/shell_elements.hpp"
+#include "core/model/shells/triangulation.hpp"
+#include "support/calculix.hpp"
+#include "support/catch.hpp"
+#include "support/surfaces.hpp"
+using namespace tapstudy;
+using namespace tapstudy::core;
+
+namespace {
+const Material sheet_steel{2.1e11, 7850.0, 0.3, ConstantDamping{0.01}};
+
+// A grid of `across` by `along` cells, placed by `at` of shares from 0 to 1; points in one place
+// are one.
+template <class At>
+void add_grid(int across, int along, const At& at, std::vector<Eigen::RowVector3d>& points,
+              std::vector<Eigen::RowVector3i>& triangles) {
+  const auto number = [&](int i, int j) {
+    const Eigen::RowVector3d place =
+        at(static_cast<double>(i) / across, static_cast<double>(j) / along);
+    const auto known =
+        std::ranges::find_if(points, [&](const auto& one) { return (one - place).norm() < 1e-9; });
+    if (known != points.end()) {
+      return static_cast<int>(known - points.begin());
+    }
+    points.push_back(place);
+    return static_cast<int>(points.size()) - 1;
+  };
+  for (int i = 0; i < across; ++i) {
+    for (int j = 0; j < along; ++j) {
+      const int a = number(i, j);
+      const int b = number(i + 1, j);
+      const int c = number(i + 1, j + 1);
+      const int d = number(i, j + 1);
+      triangles.emplace_back(a, b, c);
+      triangles.emplace_back(a, c, d);
+    }
+  }
+}
+template <class At>
+TriangleSurface grid(int across, int along, const At& at) {
+  std::vector<Eigen::RowVector3d> points;
+  std::vector<Eigen::RowVector3i> triangles;
+  add_grid(across, along, at, points, triangles);
+  return testing::surface_of(points, triangles);
+}
+Eigen::RowVector3d on_tube(double radius_m, double length_m, double turn, double along) {
+  const double angle = 2.0 * std::numbers::pi * turn;
+  return {length_m * (along - 0.5), radius_m * std::sin(angle), -radius_m * std::cos(angle)};
+}
+TriangleSurface tube(double radius_m, double length_m, int around, int along) {
+  return grid(around, along, [&](double u, double v) { return on_tube(radius_m, length_m, u, v); });
+}
+// The sides and the floor of a box without a lid, each over two shares.
+constexpr int walls_of_box = 5;
+Eigen::RowVector3d on_open_box(const Vec3& size_m, int wall, double u, double v) {
+  const double x = size_m.x() * (u - 0.5);
+  const double y = size_m.y() * (u - 0.5);
+  const double z = size_m.z() * v;
+  switch (wall) {
+    case 0:
+      return {x, -0.5 * size_m.y(), z};
+    case 1:
+      return {0.5 * size_m.x(), y, z};
+    case 2:
+      return {-x, 0.5 * size_m.y(), z};
+    case 3:
+      return {-0.5 * size_m.x(), -y, z};
+    default:
+      return {-x, size_m.y() * (v - 0.5), 0.0};
+  }
+}
+TriangleSurface open_box(const Vec3& size_m, int cells) {
+  std::vector<Eigen::RowVector3d> points;
+  std::vector<Eigen::RowVector3i> triangles;
+  for (int wall = 0; wall < walls_of_box; ++wall) {
+    add_grid(
+        cells, cells, [&](double u, double v) { return on_open_box(size_m, wall, u, v); }, points,
+        triangles);
+  }
+  return testing::surface_of(points, triangles);
+}
+// A cap of a sphere up to a polar angle, from its pole upward.
+TriangleSurface bowl(double radius_m, double up_to_rad, int rings) {
+  return grid(4 * rings, rings, [&](double turn, double up) {
+    const double angle = 2.0 * std::numbers::pi * turn;
+    const double polar = up_to_rad * up;
+    return Eigen::RowVector3d{radius_m * std::sin(polar) * std::cos(angle),
+                              -radius_m * std::sin(polar) * std::sin(angle),
+                              -radius_m * std::cos(polar)};
+  });
+}
+// Without the triangles that a pole leaves without area.
+TriangleSurface without_points(TriangleSurface surface) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < surface.triangles.rows(); ++i) {
+    const auto row = surface.triangles.row(i);
+    if (row[0] != row[1] && row[1] != row[2] && row[2] != row[0]) {
+      kept.push_back(i);
+    }
+  }
+  surface.triangles = surface.triangles(kept, Eigen::all).eval();
+  return surface;
+}
+
+Fixation ball_at(const Vec3& at_m, double radius_m) {
+  Fixation ball;
+  ball.shape = RegionShape::ball;
+  ball.at_m = at_m;
+  ball.radius_m = radius_m;
+  return ball;
+}
+PlateSpec bent(TriangleSurface middle, double thickness_m, double band_hz) {
+  PlateSpec sheet{{sheet_body(std::move(middle), thickness_m), {}, {}}, sheet_steel, band_hz};
+  sheet.mesh.shell_width_m = widest_shells_m(sheet.shape);
+  return sheet;
+}
+void check_frequencies(const Eigen::ArrayXd& found_hz, const std::vector<double>& expected_hz,
+                       double tolerance) {
+  const std::vector<double> all_found_hz(found_hz.begin(), found_hz.end());
+  CAPTURE(all_found_hz, expected_hz);
+  REQUIRE(all_found_hz.size() >= expected_hz.size());
+  for (std::size_t i = 0; i < expected_hz.size(); ++i) {
+    CAPTURE(i);
+    CHECK(found_hz[static_cast<Eigen::Index>(i)] == Approx(expected_hz[i]).epsilon(tolerance));
+  }
+}
+}  // namespace
+
+// Baker 1961, Axisymmetric modes of vibration of thin spherical shells: with W = (w R)² rho / E,
+// W² - (n (n + 1) + 1 + 3 nu) W / (1 - nu²) + (n² + n - 2) / (1 - nu²) = 0; each 2 n + 1 times.
+TEST_CASE("a closed spherical sheet has the frequencies of its membrane", "[core][model][bent]") {
+  constexpr double radius_m = 0.1;
+  constexpr double nu = 0.3;
+  std::vector<double> expected_hz;
+  for (const int n : {2, 3}) {
+    const double sum = (n * (n + 1.0) + 1.0 + 3.0 * nu) / (1.0 - nu * nu);
+    const double product = (n * n + n - 2.0) / (1.0 - nu * nu);
+    const double w2 = 0.5 * (sum - std::sqrt(sum * sum - 4.0 * product));
+    const double hz =
+        std::sqrt(w2 * sheet_steel.youngs_modulus_pa / sheet_steel.density_kg_per_m3) /
+        (2.0 * std::numbers::pi * radius_m);
+    expected_hz.insert(expected_hz.end(), static_cast<std::size_t>(2 * n + 1), hz);
+  }
+  const PlateModel built = build_plate_model(
+      bent(testing::sphere_surface(radius_m, 8), 0.001, 1.03 * expected_hz.back()));
+  CHECK(built.body.modes.report.rigid_body_modes == 6);
+  CHECK(built.modal.frequency_hz.size() == 12);
+  check_frequencies(built.modal.frequency_hz, expected_hz, 0.004);
+}
+
+namespace {
+// Flügge 1962 (Leissa 1973, Vibration of Shells, section 2.1) of a tube whose ends are held round
+// and across alone: m half waves along, n waves round.
+double tube_hz(double radius_m, double length_m, double thickness_m, int m, int n) {
+  const double nu = sheet_steel.poissons_ratio;
+  const double l = m * std::numbers::pi * radius_m / length_m;
+  const double k = std::pow(thickness_m / radius_m, 2) / 12.0;
+  const double less = 0.5 * (1.0 - nu);
+  const double more = 0.5 * (1.0 + nu);
+  Eigen::Matrix3d stiffness;
+  stiffness(0, 0) = l * l + (1.0 + k) * less * n * n;
+  stiffness(0, 1) = -more * l * n;
+  stiffness(0, 2) = -nu * l + k * (-l * l * l + less * l * n * n);
+  stiffness(1, 1) = n * n + (1.0 + 3.0 * k) * less * l * l;
+  stiffness(1, 2) = n + k * 0.5 * (3.0 - nu) * l * l * n;
+  stiffness(2, 2) = 1.0 + k * (std::pow(l * l + n * n, 2) + 1.0 - 2.0 * n * n);
+  stiffness.triangularView<Eigen::StrictlyLower>() = stiffness.transpose();
+  const double w2 = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>{stiffness}.eigenvalues()[0];
+  return std::sqrt(w2 * sheet_steel.youngs_modulus_pa /
+                   (sheet_steel.density_kg_per_m3 * (1.0 - nu * nu))) /
+         (2.0 * std::numbers::pi * radius_m);
+}
+}  // namespace
+
+TEST_CASE("a tube whose ends keep their shape has the frequencies of Flügge's theory",
+          "[core][model][bent]") {
+  constexpr double radius_m = 0.05;
+  constexpr double length_m = 0.2;
+  constexpr double thickness_m = 0.001;
+  std::vector<double> expected_hz;
+  for (int m = 1; m < 4; ++m) {
+    for (int n = 1; n < 9; ++n) {
+      const double hz = tube_hz(radius_m, length_m, thickness_m, m, n);
+      expected_hz.insert(expected_hz.end(), 2, hz);
+    }
+  }
+  std::ranges::sort(expected_hz);
+  expected_hz.resize(10);
+  PlateSpec sheet = bent(tube(radius_m, length_m, 28, 8), thickness_m, 1.05 * expected_hz.back());
+  for (const Side side : {Side::left, Side::right}) {
+    Fixation end;
+    end.shape = RegionShape::side;
+    end.side = side;
+    end.constrained_axes = {false, true, true};
+    sheet.fixations.push_back(end);
+  }
+  const PlateModel built = build_plate_model(sheet);
+  CHECK(built.body.modes.report.rigid_body_modes == 1);
+  check_frequencies(built.modal.frequency_hz, expected_hz, 0.005);
+}
+
+TEST_CASE("a flat surface with a thickness has the frequencies of the plate",
+          "[core][model][bent]") {
+  const Vec3 size_m{0.2, 0.14, 0.001};
+  PlateSpec plate{{Box{size_m}, {}, {}}, sheet_steel, 600.0};
+  plate.mesh.shell_width_m = 0.05;
+  const PlateSpec surface =
+      bent(grid(6, 4,
+                [&](double u, double v) {
+                  return Eigen::RowVector3d{size_m.x() * (u - 0.5), size_m.y() * (v - 0.5), 0.02};
+                }),
+           size_m.z(), plate.band_limit_hz);
+  CHECK(volume_m3(surface.shape) == Approx(size_m.prod()).epsilon(1e-9));
+  const Eigen::ArrayXd of_plate_hz = build_plate_model(plate).modal.frequency_hz;
+  const PlateModel of_surface = build_plate_model(surface);
+  REQUIRE(of_plate_hz.size() >= 8);
+  REQUIRE(of_surface.modal.frequency_hz.size() == of_plate_hz.size());
+  CHECK((of_surface.modal.frequency_hz / of_plate_hz - 1.0).abs().maxCoeff() < 3e-3);
+}
+
+TEST_CASE("rigid motions strain no bent or folded sheet, and have its mass",
+          "[core][model][bent]") {
+  constexpr double thickness_m = 0.001;
+  const bool is_folded = GENERATE(true, false);
+  CAPTURE(is_folded);
+  const Vec3 size_m{0.2, 0.15, 0.1};
+  const PlateSpec sheet = is_folded ? bent(open_box(size_m, 1), thickness_m, 1.0)
+                                    : bent(without_points(bowl(0.1, 1.0, 4)), thickness_m, 1.0);
+  const DiscreteBody body = discretised(sheet, sheet_steel, {}, {}, {});
+  CHECK(body.matrices.rigid_body_modes == 6);
+  const Modes modes = solve_modes(body.matrices, sheet.band_limit_hz);
+  CHECK(modes.counted_in_band == 6);
+  REQUIRE(modes.rigid_shapes.cols() == 6);
+  CHECK((body.matrices.stiffness() * modes.rigid_shapes).norm() <
+        1e-8 * body.matrices.K.norm() * modes.rigid_shapes.norm());
+
+  // Twice the energy of moving along one axis with unit speed.
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(body.displacement.cols());
+  for (Eigen::Index middle = 1; middle < body.mesh.nodes_m.rows(); middle += layers) {
+    for (decltype(body.displacement)::InnerIterator share{body.displacement, 3 * middle + 2}; share;
+         ++share) {
+      moved[share.col()] = share.value();
+    }
+  }
+  const double area_m2 =
+      is_folded ? size_m.x() * size_m.y() + 2.0 * (size_m.x() + size_m.y()) * size_m.z()
+                : 2.0 * std::numbers::pi * 0.1 * 0.1 * (1.0 - std::cos(1.0));
+  CHECK(moved.dot(body.matrices.mass() * moved) ==
+        Approx(sheet_steel.density_kg_per_m3 * area_m2 * thickness_m).epsilon(1e-3));
+}
+
+// A patch test: strain that is the same everywhere takes no force inside, on triangles of any form.
+TEST_CASE("a flat sheet of uneven triangles under even strain has no force inside",
+          "[core][model][bent]") {
+  std::vector<Eigen::RowVector3d> points{{0.0, 0.0, 0.0},   {0.24, 0.0, 0.0},  {0.24, 0.12, 0.0},
+                                         {0.0, 0.12, 0.0},  {0.04, 0.02, 0.0}, {0.18, 0.03, 0.0},
+                                         {0.16, 0.08, 0.0}, {0.08, 0.08, 0.0}};
+  std::vector<Eigen::RowVector3i> triangles{{0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7},
+                                            {2, 7, 6}, {3, 0, 4}, {3, 4, 7}, {4, 5, 6}, {4, 6, 7}};
+  const PlateSpec sheet = bent(testing::surface_of(points, triangles), 0.001, 1.0);
+  const DiscreteBody body = discretised(sheet, sheet_steel, {}, {}, {});
+  Eigen::VectorXd of_nodes(body.displacement.rows());
+  for (Eigen::Index node = 0; node < body.mesh.nodes_m.rows(); ++node) {
+    const auto at_m = body.mesh.nodes_m.row(node);
+    // Stretched and sheared in its plane, and bent to w = x² + x y with the normals turned.
+    of_nodes.segment<3>(3 * node) << at_m.x() + 0.5 * at_m.y(), 0.5 * at_m.x() - at_m.y(), 0.0;
+    of_nodes[3 * node] -= at_m.z() * (2.0 * at_m.x() + at_m.y());
+    of_nodes[3 * node + 1] -= at_m.z() * at_m.x();
+    of_nodes[3 * node + 2] += at_m.x() * (at_m.x() + at_m.y());
+  }
+  const SparseMatrix displacement = body.displacement;
+  const SparseMatrix normal = displacement.transpose() * displacement;
+  const Eigen::VectorXd unknowns =
+      Eigen::SimplicialLDLT<SparseMatrix>{normal}.solve(displacement.transpose() * of_nodes);
+  REQUIRE((displacement * unknowns - of_nodes).norm() < 1e-6 * of_nodes.norm());
+  const Eigen::VectorXd forces_n = body.matrices.stiffness() * unknowns;
+  double inside_n = 0.0;
+  for (Eigen::Index node = 0; node < body.mesh.nodes_m.rows(); ++node) {
+    const auto at_m = body.mesh.nodes_m.row(node);
+    const bool is_inside =
+        at_m.x() > 1e-6 && at_m.x() < 0.24 - 1e-6 && at_m.y() > 1e-6 && at_m.y() < 0.12 - 1e-6;
+    for (Eigen::Index axis = 0; is_inside && axis < 3; ++axis) {
+      for (decltype(body.displacement)::InnerIterator share{body.displacement, 3 * node + axis};
+           share; ++share) {
+        inside_n = std::max(inside_n, std::abs(forces_n[share.col()]));
+      }
+    }
+  }
+  CHECK(inside_n < 1e-9 * forces_n.cwiseAbs().maxCoeff());
+}
+
+TEST_CASE("a bowl has the frequencies of the solid between its faces",
+          "[core][model][bent][slow]") {
+  constexpr double band_hz = 12000.0;
+  const TriangleSurface middle = without_points(bowl(0.05, 1.2, 4));
+  const PlateModel shells = build_plate_model(bent(middle, 0.002, band_hz));
+  PlateSpec solid = bent(middle, 0.002, band_hz);
+  solid.mesh = {{1.414, 2e-9, 1.0}, 2};
+  solid.shape = Solid{sheet_body(without_points(bowl(0.05, 1.2, 6)), 0.002).surface()};
+  const PlateModel tetrahedra = build_plate_model(solid);
+  CAPTURE(shells.body.modes.report.dofs, tetrahedra.body.modes.report.dofs);
+  const Eigen::Index count = std::min<Eigen::Index>(10, tetrahedra.modal.frequency_hz.size());
+  REQUIRE(count >= 6);
+  REQUIRE(shells.modal.frequency_hz.size() >= count);
+  CHECK((tetrahedra.modal.frequency_hz.head(count) / shells.modal.frequency_hz.head(count) - 1.0)
+            .abs()
+            .maxCoeff() < 0.005);
+  CHECK(10 * shells.body.modes.report.dofs < tetrahedra.body.modes.report.dofs);
+}
+
+namespace {
+// Sheets of S8R, eight nodes each, over grids; nodes in one place are one.
+class CalculixSheets {
+ public:
+  template <class At>
+  void add(int across, int along, const At& at) {
+    for (int i = 0; i < 2 * across; i += 2) {
+      for (int j = 0; j < 2 * along; j += 2) {
+        const auto node = [&](int right, int up) {
+          return number(at(0.5 * (i + right) / across, 0.5 * (j + up) / along));
+        };
+        elements_ +=
+            fmt::format("{},{},{},{},{},{},{},{},{}\n", ++count_, node(0, 0), node(2, 0),
+                        node(2, 2), node(0, 2), node(1, 0), node(2, 1), node(1, 2), node(0, 1));
+      }
+    }
+  }
+  std::string text(double thickness_m, int modes) const {
+    return "*NODE, NSET=ALL\n" + nodes_ + "*ELEMENT, TYPE=S8R, ELSET=SHEET\n" + elements_ +
+           fmt::format(
+               "*MATERIAL, NAME=M\n*ELASTIC\n{},{}\n*DENSITY\n{}\n*SHELL SECTION, ELSET=SHEET, "
+               "MATERIAL=M\n{}\n*STEP\n*FREQUENCY\n{}\n*END STEP\n",
+               sheet_steel.youngs_modulus_pa, sheet_steel.poissons_ratio,
+               sheet_steel.density_kg_per_m3, thickness_m, modes);
+  }
+
+ private:
+  int number(const Eigen::RowVector3d& at_m) {
+    const std::array<long, 3> key{std::lround(1e8 * at_m.x()), std::lround(1e8 * at_m.y()),
+                                  std::lround(1e8 * at_m.z())};
+    const auto [known, is_new] = numbers_.try_emplace(key, static_cast<int>(numbers_.size()) + 1);
+    if (is_new) {
+      nodes_ +=
+          fmt::format("{},{:.12g},{:.12g},{:.12g}\n", known->second, at_m.x(), at_m.y(), at_m.z());
+    }
+    return known->second;
+  }
+  std::map<std::array<long, 3>, int> numbers_;
+  std::string nodes_;
+  std::string elements_;
+  int count_{0};
+};
+}  // namespace
+
+TEST_CASE("CalculiX finds the frequencies of a bent and of a folded sheet with its shells S8R",
+          "[core][model][calculix][bent][slow]") {
+  constexpr double thickness_m = 0.001;
+  const bool is_folded = GENERATE(true, false);
+  CAPTURE(is_folded);
+  const Vec3 size_m{0.2, 0.15, 0.1};
+  CalculixSheets calculix;
+  if (is_folded) {
+    for (int wall = 0; wall < walls_of_box; ++wall) {
+      calculix.add(12, 12, [&](double u, double v) { return on_open_box(size_m, wall, u, v); });
+    }
+  } else {
+    calculix.add(40, 16, [](double u, double v) { return on_tube(0.05, 0.2, u, v); });
+  }
+  std::vector<double> theirs_hz = testing::calculix_hz(calculix.text(thickness_m, 16), 16);
+  REQUIRE(theirs_hz.size() == 16);
+  theirs_hz.erase(theirs_hz.begin(), theirs_hz.begin() + 6);  // motions of the rigid body
+  const PlateSpec sheet = is_folded
+                              ? bent(open_box(size_m, 2), thickness_m, 1.02 * theirs_hz.back())
+                              : bent(tube(0.05, 0.2, 28, 8), thickness_m, 1.02 * theirs_hz.back());
+  // CalculiX joins solid elements along a fold by a rigid knot, as wide as the sheet is thick.
+  check_frequencies(build_plate_model(sheet).modal.frequency_hz, theirs_hz,
+                    is_folded ? 0.012 : 0.005);
+}
+
+TEST_CASE("a bowl is held, sprung and joined to another as other bodies are",
+          "[core][model][bent]") {
+  PlateSpec sheet = bent(without_points(bowl(0.1, 1.0, 4)), 0.001, 1200.0);
+  const Fixation foot = ball_at({0.0, 0.0, -0.1}, 0.03);
+  const JointSpring::End from{0, foot};
+  const JointSpring::End to{1, foot};
+  const Eigen::ArrayXd alone_hz = build_plate_model(sheet).modal.frequency_hz;
+  PlateSpec joined = sheet;
+  joined.joints = std::make_shared<const Joints>(
+      Joints{{JoinedBody{sheet, sheet_steel}}, {{from, to, {1e4, 1e4, 1e4}, 0.0}}});
+  const PlateModel both = build_plate_model(joined, {}, ErrorEstimation::wanted);
+  REQUIRE(alone_hz.size() >= 2);
+  for (const double hz : alone_hz) {  // moving together
+    CHECK((both.modal.frequency_hz / hz - 1.0).abs().minCoeff() < 1e-6);
+  }
+  sheet.fixations = {foot};
+  const Eigen::ArrayXd held_hz = build_plate_model(sheet).modal.frequency_hz;
+  sheet.fixations[0].springs_n_per_m = Vec3{1e14, 1e14, 1e14};
+  const Eigen::ArrayXd sprung_hz = build_plate_model(sheet).modal.frequency_hz;
+  REQUIRE(held_hz.size() == sprung_hz.size());
+  CHECK((sprung_hz / held_hz - 1.0).abs().maxCoeff() < 2e-3);
+}
+
+TEST_CASE("narrower shells divide a sheet's triangles and leave its frequencies and its folds",
+          "[core][model][bent]") {
+  PlateSpec sheet = bent(open_box({0.2, 0.15, 0.1}, 1), 0.001, 320.0);
+  const PlateModel coarse = build_plate_model(sheet, {}, ErrorEstimation::wanted);
+  sheet.mesh.shell_width_m = 0.5 * sheet.mesh.shell_width_m.value();
+  const PlateModel fine = build_plate_model(sheet);
+  CHECK(fine.body.modes.report.tets > 3 * coarse.body.modes.report.tets);
+  const Eigen::Index count = fine.modal.frequency_hz.size();
+  REQUIRE(count >= 3);
+  const FrequencyErrors errors =
+      frequency_errors(coarse.body.modes, sheet_steel, sheet.band_limit_hz);
+  const Eigen::Index common = std::min(count, coarse.modal.frequency_hz.size());
+  CHECK((coarse.modal.frequency_hz.head(common) >= fine.modal.frequency_hz.head(common) * 0.9999)
+            .all());
+  CHECK((coarse.modal.frequency_hz.head(common) / fine.modal.frequency_hz.head(common) - 1.0)
+            .maxCoeff() < 2.0 * errors.largest() + 1e-4);
+}
+
+TEST_CASE("a sheet is no solid, and not folded back on itself", "[core][model][bent]") {
+  PlateSpec sheet = bent(tube(0.05, 0.2, 16, 4), 0.001, 500.0);
+  sheet.mesh.shell_width_m.reset();
+  CHECK_THROWS_WITH(build_plate_model(sheet), Contains("shell elements, no tetrahedra"));
+  const TriangleSurface folded_back =
+      testing::surface_of({{0.0, 0.0, 0.0}, {0.1, 0.0, 0.0}, {0.0, 0.1, 0.0}, {0.0, 0.1, 0.001}},
+                          {{0, 1, 2}, {1, 0, 3}});
+  CHECK_THROWS_WITH(sheet_body(folded_back, 0.001), Contains("folded back"));
+  CHECK_THROWS_WITH(build_plate_model(bent(tube(0.05, 0.2, 16, 4), 0.2, 500.0)),
+                    Contains("more tightly than its thickness"));
+}

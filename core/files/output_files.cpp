@@ -15,6 +15,15 @@
 
 #include "core/error.hpp"
 namespace tapstudy::core {
+void flush_directory(const std::string& directory) {
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the way of the C library
+  const int descriptor = open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor >= 0) {
+    fsync(descriptor);
+    close(descriptor);
+  }
+}
+
 bool write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = write(descriptor, bytes.data(), bytes.size());

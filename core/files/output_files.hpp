@@ -8,6 +8,9 @@
 namespace tapstudy::core {
 // Writes to a file or pipe; false on failure, with errno.
 bool write_all(int descriptor, std::string_view bytes);
+// Flushes a directory's entries to the disk, which POSIX asks for where a file in it was made or
+// renamed and is to survive a power cut. Where a file system cannot, it needs none.
+void flush_directory(const std::string& directory);
 
 using Write = std::function<void(std::ostream&)>;
 // Throws InvalidInput if the file already exists or its directory does not: to be called before a

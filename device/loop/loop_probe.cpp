@@ -44,9 +44,7 @@ void write_to_disk(const std::stop_token& stop) {
   }
   close(file);
 }
-}  // namespace
 
-namespace {
 void run_probe(const core::RealtimeRequest& request, Nanoseconds period, std::int64_t ticks,
                const std::function<void()>& work, ProbedLoop& probed) {
   probed.realtime = ask_for_realtime(request);

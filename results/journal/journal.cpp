@@ -30,7 +30,11 @@ class LockedFile {
     if (descriptor_ < 0) {
       throw failure(file, "cannot be written");
     }
-    if (flock(descriptor_, LOCK_EX) != 0) {
+    int locked = flock(descriptor_, LOCK_EX);
+    while (locked != 0 && errno == EINTR) {
+      locked = flock(descriptor_, LOCK_EX);
+    }
+    if (locked != 0) {
       const StoreError error =
           failure(file, "cannot be locked (a study belongs on a disk of this machine)");
       close(descriptor_);
@@ -81,6 +85,9 @@ void Journal::flush(int descriptor) {
   if (fsync(descriptor) != 0) {
     flush_failed_ = true;
     throw failure(file_, "writing failed");
+  }
+  if (flushed_bytes_ == 0) {  // this program may have made it
+    core::flush_directory(std::filesystem::path{file_}.parent_path().string());
   }
   flush_failed_ = false;
   flushed_bytes_ = read_bytes_;

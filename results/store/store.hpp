@@ -74,7 +74,6 @@ class Store {
   // InvalidInput if the participant is there already in another mode.
   Place place_of(const std::string& participant_id, Mode mode, const OtherParticipants& others,
                  const std::function<bool(int order_index)>& may_have = {});
-  bool has_sessions(const std::string& participant_id);
   // Whether any participant is in a group.
   bool has_groups();
   // Whether any session is one of the protocol's; has another text of the protocol.

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "core/files/output_files.hpp"
 #include "core/text/plain_text.hpp"
 #include "results/compression.hpp"
 #include "results/store/store.hpp"
@@ -306,6 +307,7 @@ void Store::rewrite_database() {
   if (error) {
     throw StoreError{fmt::format("{}: cannot be written: {}", file, error.message())};
   }
+  core::flush_directory(fs::path{file}.parent_path().string());
 }
 
 void Store::check_has_not_moved() {

@@ -77,10 +77,6 @@ int Store::free_order_index(Mode mode, const OtherParticipants& others,
   return free;
 }
 
-bool Store::has_sessions(const std::string& participant_id) {
-  return latest_session(participant_id).has_value();
-}
-
 // Once they are committed: what is rolled back must not be in the journal.
 void Store::journal_sessions() {
   if (journal_ && !database_.is_in_transaction()) {

@@ -265,7 +265,8 @@ std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
                              const core::ModelReport& report) {
   std::string lines;
   for (std::size_t i = 0; i < report.bodies.size(); ++i) {
-    if (mesh_of(stimulus, i).order == core::chosen_order && report.bodies[i].order == 1) {
+    const core::Meshing& mesh = mesh_of(stimulus, i);
+    if (!mesh.is_automatic && mesh.order == core::chosen_order && report.bodies[i].order == 1) {
       lines += fmt::format(
           "  warning: {} has linear elements, as quadratic ones would have more than {} unknowns: "
           "its frequencies may be far too high (of a box mesh: auto; fewer elements: a surface of "

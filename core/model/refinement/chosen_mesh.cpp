@@ -151,6 +151,13 @@ class ChosenMesh {
     if (error_ <= fair) {
       return;
     }
+    if (rounds_.back().modes == 0) {
+      throw ModelError{
+          fmt::format("mesh: auto: no mode is found in the band up to {:g} Hz with {} unknowns: a "
+                      "body this stiff "
+                      "or this small vibrates above it",
+                      body_.band_limit_hz, last_.modes.report.dofs)};
+    }
     throw ModelError{fmt::format(
         "mesh: auto: within {} unknowns the frequencies are still {} (smaller or thicker bodies "
         "take fewer; or state order, max_tet_volume_m3 and flattening, at your own time and "

@@ -153,10 +153,9 @@ class ChosenMesh {
     }
     if (rounds_.back().modes == 0) {
       throw ModelError{
-          fmt::format("mesh: auto: no mode is found in the band up to {:g} Hz with {} unknowns: a "
-                      "body this stiff "
-                      "or this small vibrates above it",
-                      body_.band_limit_hz, last_.modes.report.dofs)};
+          fmt::format("mesh: auto: no mode is found below band_limit_hz with {} unknowns: a body "
+                      "this stiff or this small vibrates above it",
+                      last_.modes.report.dofs)};
     }
     throw ModelError{fmt::format(
         "mesh: auto: within {} unknowns the frequencies are still {} (smaller or thicker bodies "

@@ -307,25 +307,6 @@ TEST_CASE("a flat sheet of uneven triangles under even strain has no force insid
   CHECK(inside_n < 1e-9 * forces_n.cwiseAbs().maxCoeff());
 }
 
-TEST_CASE("a bowl has the frequencies of the solid between its faces",
-          "[core][model][bent][slow]") {
-  constexpr double band_hz = 12000.0;
-  const TriangleSurface middle = without_points(bowl(0.05, 1.2, 4));
-  const PlateModel shells = build_plate_model(bent(middle, 0.002, band_hz));
-  PlateSpec solid = bent(middle, 0.002, band_hz);
-  solid.mesh = {{1.414, 2e-9, 1.0}, 2};
-  solid.shape = Solid{sheet_body(without_points(bowl(0.05, 1.2, 6)), 0.002).surface()};
-  const PlateModel tetrahedra = build_plate_model(solid);
-  CAPTURE(shells.body.modes.report.dofs, tetrahedra.body.modes.report.dofs);
-  const Eigen::Index count = std::min<Eigen::Index>(10, tetrahedra.modal.frequency_hz.size());
-  REQUIRE(count >= 6);
-  REQUIRE(shells.modal.frequency_hz.size() >= count);
-  CHECK((tetrahedra.modal.frequency_hz.head(count) / shells.modal.frequency_hz.head(count) - 1.0)
-            .abs()
-            .maxCoeff() < 0.005);
-  CHECK(10 * shells.body.modes.report.dofs < tetrahedra.body.modes.report.dofs);
-}
-
 namespace {
 // Sheets of S8R, eight nodes each, over grids; nodes in one place are one.
 class CalculixSheets {
@@ -388,7 +369,7 @@ TEST_CASE("CalculiX finds the frequencies of a bent and of a folded sheet with i
   REQUIRE(theirs_hz.size() == 16);
   theirs_hz.erase(theirs_hz.begin(), theirs_hz.begin() + 6);  // motions of the rigid body
   const PlateSpec sheet = is_folded
-                              ? bent(open_box(size_m, 2), thickness_m, 1.02 * theirs_hz.back())
+                              ? bent(open_box(size_m, 4), thickness_m, 1.02 * theirs_hz.back())
                               : bent(tube(0.05, 0.2, 28, 8), thickness_m, 1.02 * theirs_hz.back());
   // CalculiX joins solid elements along a fold by a rigid knot, as wide as the sheet is thick.
   check_frequencies(build_plate_model(sheet).modal.frequency_hz, theirs_hz,

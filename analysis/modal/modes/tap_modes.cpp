@@ -290,6 +290,8 @@ TapModes identify_modes(const FreeDecay& decay, const Band& band) {
 TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& band,
                     const std::vector<double>& lines_hz) {
   TapModes result = before;
+  const Band wide = somewhat_wider(band, decay.rate_hz);
+  result.spectrum = band_spectrum(decay, wide);
   result.lines_hz = lines_hz;
   result.modes.clear();
   std::vector<Candidate> candidates;
@@ -308,10 +310,25 @@ TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& 
   if (candidates.size() > max_mode_count(before.spectrum, lines_hz)) {
     throw core::InvalidInput{"a decay is too short for so many modes and lines"};
   }
-  result.fit =
-      fit_significant(result.spectrum, somewhat_wider(band, decay.rate_hz), lines_hz, candidates);
+  result.fit = fit_significant(result.spectrum, wide, lines_hz, candidates);
   judge(candidates, band, decay.duration_s(), result);
   return result;
+}
+
+FreeDecay without_modes(FreeDecay decay, const TapModes& tap) {
+  for (const TapMode& mode : tap.modes) {
+    const FittedMode& fitted = mode.fitted;
+    if (fitted.pole.damping_ratio < 0.0) {
+      continue;  // no free decay
+    }
+    const std::complex<double> log_z = log_of(fitted.pole, decay.rate_hz);
+    for (Eigen::Index i = 0; i < decay.samples.size(); ++i) {
+      const auto n = static_cast<double>(i);
+      decay.samples[i] -= fitted.amplitude * std::exp(log_z.real() * n) *
+                          std::cos(log_z.imag() * n + fitted.phase_rad);
+    }
+  }
+  return decay;
 }
 
 std::vector<double> missed_lines(const TapModes& tap, const std::vector<TapModes>& taps) {

@@ -40,10 +40,14 @@ struct TapModes {
 // InvalidInput for decays that are too short.
 TapModes identify_modes(const FreeDecay& decay, const Band& band);
 
-// The same tap's modes fitted again beside steady tones that other taps show. Throws InvalidInput
-// for a decay too short for that.
+// The same tap's modes fitted again, to a decay that may have been freed from others, beside steady
+// tones. Throws InvalidInput for a decay too short for that.
 TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& band,
                     const std::vector<double>& lines_hz);
+
+// A decay without what the fit says of these modes. What a mode leaves in another part of a band is
+// smooth there, but no polynomial: it would be felt in the damping of modes there.
+FreeDecay without_modes(FreeDecay decay, const TapModes& tap);
 
 // The largest number of modes that can be fitted to a spectrum beside lines.
 std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);

@@ -163,19 +163,45 @@ void share_lines(const std::vector<IdentifiedTap>& taps, PartOfBand& part, TapRe
   }
 }
 
+// The modes of the other parts taken away from each decay, as each was found alone.
+void free_from_one_another(std::vector<PartOfBand>& parts) {
+  const std::vector<PartOfBand> alone = parts;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    PartOfBand& part = parts[p];
+    for (std::size_t k = 0; k < part.taps.size(); ++k) {
+      for (std::size_t other = 0; other < alone.size(); ++other) {
+        const auto tap = std::ranges::find(alone[other].taps, part.taps[k]);
+        if (other != p && tap != alone[other].taps.end()) {
+          const auto at = static_cast<std::size_t>(tap - alone[other].taps.begin());
+          part.decays[k] =
+              analysis::without_modes(std::move(part.decays[k]), alone[other].modes[at]);
+        }
+      }
+      part.modes[k] =
+          analysis::with_lines(part.modes[k], part.decays[k], part.band, part.modes[k].lines_hz);
+    }
+  }
+}
+
 // Part by part of the band; taps that are too short for all of them are left out.
 analysis::ModesOfTaps found_in_parts(const analysis::Band& band, std::vector<IdentifiedTap>& taps,
                                      TapRemarks& remarks) {
   std::vector<std::vector<analysis::TapModes>> pieces(taps.size());
-  analysis::ModesOfTaps found;
+  std::vector<PartOfBand> parts;
   for (const analysis::Band& of_part : analysis::parts_of(band, decays_of(taps))) {
     PartOfBand part = identified_in(of_part, taps, remarks);
-    if (part.taps.empty()) {
-      continue;
+    if (!part.taps.empty()) {
+      share_lines(taps, part, remarks);
+      parts.push_back(std::move(part));
     }
-    share_lines(taps, part, remarks);
+  }
+  if (parts.size() > 1) {
+    free_from_one_another(parts);
+  }
+  analysis::ModesOfTaps found;
+  for (const PartOfBand& part : parts) {
     analysis::ModesOfTaps in_part = analysis::resolve_close_modes(
-        part.decays, part.impacts, of_part,
+        part.decays, part.impacts, part.band,
         {part.modes, analysis::modes_over_taps(part.modes, part.impacts)});
     found.modes.insert(found.modes.end(), in_part.modes.begin(), in_part.modes.end());
     for (std::size_t k = 0; k < part.taps.size(); ++k) {

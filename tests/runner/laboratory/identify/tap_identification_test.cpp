@@ -104,6 +104,34 @@ TEST_CASE("the decaying sinusoid is fitted to taps that are not clipped, and to 
   CHECK(all.agreed.size() == 1);
 }
 
+// A wide band is looked at part by part. The oracle is what was planted, almost without noise.
+TEST_CASE("a mode's damping does not depend on modes in other parts of the band",
+          "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.csv";
+  const std::vector<testing::PlantedMode> planted{
+      {{200.0, 0.010}, 1.0}, {{415.0, 0.008}, 0.6}, {{1100.0, 0.005}, 0.4}};
+  const analysis::Recording recording =
+      testing::planted_recording(planted, {0.3, 1.4}, 12000.0, 2.5, 1e-5, 5);
+  std::string text = "live\n";
+  for (const double sample : recording.samples) {
+    text += fmt::format("{:.9g}\n", sample);
+  }
+  testing::write(file, text);
+  runner::TapQuestion question;
+  question.recordings = {file};
+  question.reading.rate_hz = recording.rate_hz;
+  question.band = analysis::Band{10.0, 2500.0};
+  runner::Progress progress{"identifying"};
+  const runner::TapIdentification found = runner::identify_taps(question, progress);
+  REQUIRE(found.agreed.size() == planted.size());
+  for (std::size_t i = 0; i < planted.size(); ++i) {
+    const analysis::RepeatedMode& mode = found.modes[found.agreed[i]];
+    CHECK(mode.frequency_hz.value == Approx(planted[i].pole.frequency_hz).epsilon(1e-6));
+    CHECK(mode.damping_ratio.value == Approx(planted[i].pole.damping_ratio).epsilon(2e-4));
+  }
+}
+
 TEST_CASE("one channel named in two ways is refused", "[runner][identify]") {
   const testing::TempDirectory directory;
   const std::string file = directory / "taps.csv";

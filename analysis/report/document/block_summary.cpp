@@ -7,7 +7,6 @@
 #include <cctype>
 #include <iterator>
 #include <map>
-#include <ranges>
 #include <span>
 #include <unordered_set>
 
@@ -62,9 +61,9 @@ void BlockSummary::write_words_html(std::ostream& out, int participants) const {
   constexpr std::size_t most_results = 6;
   std::vector<std::string> sentences{who_answered(*this, participants)};
   std::vector<std::string> found;
-  for (const MainResult& result : main_results | std::views::take(most_results)) {
-    found.push_back(in_words(result));
-  }
+  const std::size_t shown = std::min(main_results.size(), most_results);
+  std::transform(main_results.begin(), main_results.begin() + static_cast<std::ptrdiff_t>(shown),
+                 std::back_inserter(found), [](const MainResult& one) { return in_words(one); });
   if (!found.empty()) {
     char& first = found.front().front();
     first = static_cast<char>(std::toupper(static_cast<unsigned char>(first)));

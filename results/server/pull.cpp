@@ -82,7 +82,7 @@ std::vector<ServedStore> stores_of_study(ServerConnection& server, const std::st
     }
     throw core::InvalidInput{
         fmt::format("--study: {} has {}", server.name(),
-                    named.empty() ? "none" : fmt::format("{}", fmt::join(named, ", ")))};
+                    named.empty() ? "no study" : fmt::format("{}", fmt::join(named, ", ")))};
   }
   return found;
 }

@@ -92,22 +92,28 @@ double Energies::of_group(std::size_t first) const {
 }
 
 namespace {
-// Energies of groups of frames. Where all samples of one are the same, no sensor recorded: editors
-// and triggered recorders pad so. It has no noise, and is left out unless there is nothing else.
+// Energies of groups of frames, without those at either end in which all samples are the same:
+// editors and triggered recorders pad so, and no sensor was recorded there.
 std::vector<double> energies_of_groups(const Energies& energies,
                                        const std::vector<double>& centred) {
-  std::vector<double> recorded;
-  std::vector<double> all;
+  std::vector<double> groups;
+  std::size_t first = 0;
+  std::size_t last = 0;  // behind the last that changes
   for (std::size_t i = 0; i < energies.of_frame.size(); i += frames_per_group) {
-    all.push_back(energies.of_group(i));
+    groups.push_back(energies.of_group(i));
     const auto begin = centred.begin() + static_cast<std::ptrdiff_t>(i * energies.frame);
     const auto length = static_cast<std::ptrdiff_t>(frames_per_group * energies.frame);
     const auto end = begin + std::min(length, centred.end() - begin);
     if (std::adjacent_find(begin, end, std::not_equal_to<>{}) != end) {
-      recorded.push_back(all.back());
+      first = last == 0 ? groups.size() - 1 : first;
+      last = groups.size();
     }
   }
-  return recorded.empty() ? all : recorded;
+  if (last > 0) {
+    groups.resize(last);
+    groups.erase(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+  return groups;
 }
 }  // namespace
 

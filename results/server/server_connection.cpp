@@ -205,6 +205,19 @@ void ServerConnection::finish_command() {
   }
 }
 
+namespace {
+void add_rows(const PGresult* result, std::vector<ServerConnection::Cells>& rows) {
+  for (int row = 0; row < PQntuples(result); ++row) {
+    ServerConnection::Cells& cells = rows.emplace_back();
+    for (int column = 0; column < PQnfields(result); ++column) {
+      cells.push_back(PQgetisnull(result, row, column) != 0
+                          ? std::nullopt
+                          : std::optional<std::string>{PQgetvalue(result, row, column)});
+    }
+  }
+}
+}  // namespace
+
 std::vector<ServerConnection::Cells> ServerConnection::rows(
     const std::string& sql, const std::vector<std::string>& parameters) {
   std::vector<const char*> values;
@@ -224,14 +237,7 @@ std::vector<ServerConnection::Cells> ServerConnection::rows(
     if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK && message.empty()) {
       message = one_line(PQresultErrorMessage(result.get()));
     }
-    for (int row = 0; row < PQntuples(result.get()); ++row) {
-      Cells& cells = rows.emplace_back();
-      for (int column = 0; column < PQnfields(result.get()); ++column) {
-        cells.push_back(PQgetisnull(result.get(), row, column) != 0
-                            ? std::nullopt
-                            : std::optional<std::string>{PQgetvalue(result.get(), row, column)});
-      }
-    }
+    add_rows(result.get(), rows);
   }
   if (!message.empty()) {
     fail(message);

@@ -368,6 +368,8 @@ void check_begins_not_with_practice(const FileAnswers& of, const OtherColumn& co
 void check_other_columns(const std::vector<OtherColumns>& files,
                          const std::vector<AnswerRow>& answers, const AnswerOrigins& origins,
                          const AnswerReading& reading, bool are_participants_known) {
+  const bool has_runs_alone =
+      !reading.pools_runs && are_participants_known && !is_counted_already(answers);
   for (const OtherColumns& file : files) {
     const FileAnswers of = answers_of(file, answers, origins);
     for (const OtherColumn& column : of.columns) {
@@ -382,7 +384,7 @@ void check_other_columns(const std::vector<OtherColumns>& files,
         check_begins_not_with_practice(of, column);
       }
     }
-    if (!reading.pools_runs && are_participants_known && !is_counted_already(answers)) {
+    if (has_runs_alone) {
       check_has_each_trial_once(of);
       check_has_each_row_once(of);
     }

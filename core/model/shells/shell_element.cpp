@@ -81,7 +81,7 @@ ShellElements::ShellElements(const Material& material, double thickness_m, int o
 struct ShellElements::Lamina {
   Eigen::Matrix3d axes;
   Eigen::Matrix3d slopes;
-  double volume_m3;  // that the point of integration stands for
+  double volume_m3{};  // that the point of integration stands for
 };
 
 ShellElements::Lamina ShellElements::lamina_at(const Point& point, double height,

@@ -369,7 +369,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   }
   TypedCommands commands;
   AskOperator ask_operator = [&](const std::string& task) {
-    return asked_and_done(input, commands, task);
+    return asked_and_done(input, commands, "\n" + task + " When that is done (quit stops here),");
   };
   const DeviceRequest device_request{live.protocol, live.rig,
                                      [&](const std::string& task) { return ask_operator(task); }};

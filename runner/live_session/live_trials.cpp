@@ -89,8 +89,8 @@ std::unique_ptr<Console> console_of(const LiveTrials::Parts& parts, OperatorDesk
                        std::move(move_hand), [parts] { return masking_in_view(parts); }});
   // the terminal's lines are commands then, and the operator may be at a page
   parts.ask_operator = [&desk](const std::string& task) {
-    return desk.waits_for_operator(
-        task, [&] { say("{} {}ype resume.\n", task, task.ends_with('.') ? "Then t" : "t"); });
+    return desk.waits_for_operator(task,
+                                   [&] { say("\n{} When that is done, type resume.\n", task); });
   };
   introduce(*console);
   return console;

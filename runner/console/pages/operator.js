@@ -41,10 +41,9 @@ function showBadges(next) {
   setText(byId("fault"), next.state === "faulted" ? word("fault_text") : "");
 }
 
-// What the operator is waited for may end as the terminal goes on: "…, and type resume".
 function showWarnings({ warnings, waits_for: task }) {
   const texts = (warnings ?? []).map((text) => word("warning", { text }));
-  if (task) texts.push(word("waits_for", { text: task.replace(/,? and$/u, "."), action: word("action_resume") }));
+  if (task) texts.push(word("waits_for", { text: task, action: word("action_resume") }));
   showIfChanged(byId("warnings"), texts, () => texts.map((text) => el("p", {}, text)));
 }
 

@@ -39,11 +39,10 @@ std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
     throw gives_up;
   }
   const DeviceKind& kind = kind_of(request.rig);
-  std::string task = fmt::format(
-      "\n{}.\n{}Type quit to stop here; or check the device, its power and cable, and to continue,",
-      what_happened, text.empty() ? text : fmt::format("The device says: {}\n", text));
+  std::string task = fmt::format("{}.\n{}Check the device, its power and cable.", what_happened,
+                                 text.empty() ? text : fmt::format("The device says: {}\n", text));
   while (request.ask_operator(task)) {
-    task = "It is not there yet. To try again,";
+    task = "It is not there yet. Check its power and cable.";
     if (!kind.is_there()) {
       continue;
     }
@@ -51,7 +50,7 @@ std::unique_ptr<SessionDevice> reconnect(const std::string& what_happened,
     try {
       return kind.open(request);
     } catch (const device::DeviceError& error) {  // enumerated, but not ready, or still held
-      task = fmt::format("{}. To try again,", error.what());
+      task = fmt::format("{}. Check the device.", error.what());
     }
   }
   throw gives_up;

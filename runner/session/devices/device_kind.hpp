@@ -34,7 +34,7 @@ class SessionDevice {
 struct DeviceRequest {
   const protocols::Protocol& protocol;
   const protocols::Rig& rig;
-  // Asks the operator to do something; false if the session is to stop instead.
+  // Asks the operator to do something, in whole sentences; false if the session is to stop instead.
   std::function<bool(const std::string& task)> ask_operator;
 };
 

@@ -112,7 +112,7 @@ class SpidarDevice final : public SessionDevice {
   }
   bool is_without_voltage() const { return is_amplifier_sensed_ && !spidar_.has_motor_voltage(); }
   void home() {
-    if (!ask_operator_("\nHold the grip in the middle of the frame, not turned, and")) {
+    if (!ask_operator_("Hold the grip in the middle of the frame, not turned.")) {
       throw Stopped{"stopped before the grip was in the middle"};
     }
     check(spidar_.home());

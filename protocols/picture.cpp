@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <vector>
 
 #include "core/error.hpp"
@@ -14,27 +13,21 @@ namespace {
 using namespace std::string_view_literals;
 constexpr std::string_view blanks = " \t\r\n";
 
-std::string in_lower_case(std::string_view text) {
-  std::string lower{text};
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  return lower;
-}
-
 // "href" of "xlink:href".
 std::string local_name(std::string_view name) {
   const auto colon = name.find(':');
-  return in_lower_case(colon == name.npos ? name : name.substr(colon + 1));
+  return core::lower_case(colon == name.npos ? name : name.substr(colon + 1));
 }
 
 // Within the file itself, or data that stand in it.
 bool is_own(std::string_view reference) {
-  const std::string target = in_lower_case(core::trimmed(reference));
+  const std::string target = core::lower_case(core::trimmed(reference));
   return target.starts_with('#') || target.starts_with("data:image/");
 }
 
 // Of style sheets, and of attributes that are such: url(#paint), url("https://…").
 bool are_urls_own(std::string_view style) {
-  const std::string lower = in_lower_case(style);
+  const std::string lower = core::lower_case(style);
   for (auto at = lower.find("url("); at != lower.npos; at = lower.find("url(", at + 1)) {
     const auto from = lower.find_first_not_of(" \t\r\n'\"", at + 4);
     if (from == lower.npos || !is_own(std::string_view{lower}.substr(from))) {

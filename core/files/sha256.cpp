@@ -1,11 +1,12 @@
 #include "core/files/sha256.hpp"
 
-#include <fmt/format.h>
 #include <openssl/evp.h>
 
 #include <array>
+#include <span>
 
 #include "core/error.hpp"
+#include "core/text/hexadecimal.hpp"
 namespace tapstudy::core {
 std::string sha256(const std::string& text) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
@@ -13,10 +14,6 @@ std::string sha256(const std::string& text) {
   if (EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
     throw Error{"SHA-256 is not available"};
   }
-  std::string hex;
-  for (unsigned int i = 0; i < size; ++i) {
-    hex += fmt::format("{:02x}", digest.at(i));
-  }
-  return hex;
+  return to_hex(std::as_bytes(std::span{digest}.first(size)));
 }
 }  // namespace tapstudy::core

@@ -37,6 +37,15 @@ std::string trimmed(std::string_view text) {
                                          : std::string{text.substr(first, last - first + 1)};
 }
 
+std::string lower_case(std::string_view text) {
+  const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
+  std::string lower{text};
+  for (char& c : lower) {
+    c = is_capital(c) ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return lower;
+}
+
 std::size_t character_count(std::string_view text) {
   return text.size() - static_cast<std::size_t>(std::ranges::count_if(text, continues_a_character));
 }

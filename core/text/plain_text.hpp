@@ -11,6 +11,8 @@ namespace tapstudy::core {
 bool is_plain_text(std::string_view text);
 // The text without spaces, tabs and line breaks at its ends.
 std::string trimmed(std::string_view text);
+// The text with its ASCII letters in lower case.
+std::string lower_case(std::string_view text);
 // Characters of plain text, each of one code point.
 std::size_t character_count(std::string_view text);
 // The first characters, as many as fit into so many bytes: none is cut in two.

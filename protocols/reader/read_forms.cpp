@@ -3,11 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <set>
 #include <utility>
 
+#include "core/text/plain_text.hpp"
 #include "protocols/form.hpp"
 #include "protocols/reader/read_sections.hpp"
 namespace tapstudy::protocols {
@@ -150,8 +150,7 @@ const std::vector<BidsColumn>& bids_columns() {
 }
 
 bool is_value_of(const BidsColumn& column, const std::string& option) {
-  std::string small = option;
-  std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string small = core::lower_case(option);
   return std::ranges::any_of(column.values, [&](const std::string& value) {
     return small == value || small == value.substr(0, 1);
   });

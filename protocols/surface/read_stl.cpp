@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
 #include "core/error.hpp"
+#include "core/text/plain_text.hpp"
 #include "protocols/surface/surface_soup.hpp"
 #include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
@@ -17,13 +17,6 @@ static_assert(std::endian::native == std::endian::little, "as in a binary STL");
 constexpr std::size_t header_bytes = 80;
 constexpr std::size_t before_triangles = header_bytes + 4;
 constexpr std::size_t triangle_bytes = 50;
-
-std::string in_small_letters(std::string_view word) {
-  std::string small{word};
-  std::ranges::transform(small, small.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return small;
-}
 
 // Three numbers a vertex; which words stand around them is of no more use than to tell facets
 // apart.
@@ -52,7 +45,7 @@ class AsciiStl {
   void add(const std::vector<std::string_view>& words) {
     ++line_;
     for (std::size_t i = 0; i < words.size(); ++i) {
-      const std::string word = in_small_letters(words[i]);
+      const std::string word = core::lower_case(words[i]);
       if (word == "solid" || word == "endsolid") {
         return;  // the rest is a name
       }
@@ -135,7 +128,7 @@ SurfaceSoup read_stl(const std::string& file, std::string_view bytes) {
     return read_binary(file, bytes);
   }
   const std::string_view text = without_byte_order_mark(bytes);
-  const std::string start = in_small_letters(text.substr(0, 1000));
+  const std::string start = core::lower_case(text.substr(0, 1000));
   if (start.find_first_not_of(" \t\r\n") != std::string::npos &&
       start.substr(start.find_first_not_of(" \t\r\n")).starts_with("solid")) {
     return AsciiStl{file, text}.read();

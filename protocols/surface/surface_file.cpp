@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -33,10 +32,7 @@ constexpr double max_coordinate_m = 1e6;
 constexpr std::size_t most_read = 2'000'000;  // triangles
 
 std::string ending_of(const std::string& file) {
-  std::string ending = std::filesystem::path{file}.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return core::lower_case(std::filesystem::path{file}.extension().string());
 }
 
 // What else bodies come as, and the program that makes triangles of it.

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "core/text/plain_text.hpp"
@@ -87,8 +86,7 @@ std::string with_decimal_point(std::string text) {
 }
 
 std::optional<std::string> option_of_key(const std::string& text, const Answers& answers) {
-  std::string key = core::trimmed(text);
-  std::ranges::transform(key, key.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string key = core::lower_case(core::trimmed(text));
   const auto found = std::ranges::find(answers.keys, key);
   const auto option = static_cast<std::size_t>(found - answers.keys.begin());
   return found == answers.keys.end() || option >= answers.options.size()

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -10,6 +9,7 @@
 #include <span>
 
 #include "core/files/sha256.hpp"
+#include "core/text/hexadecimal.hpp"
 #include "results/compression.hpp"
 #include "results/journal/journal.hpp"
 #include "results/store_error.hpp"
@@ -22,25 +22,6 @@ constexpr std::string_view chain_key = ",\"chain\":\"";
 // Bytes that are not UTF-8 become replacement characters: the journal is text.
 std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string to_hex(std::span<const std::byte> bytes) {
-  std::string hex;
-  for (const std::byte byte : bytes) {
-    hex += fmt::format("{:02x}", std::to_integer<int>(byte));
-  }
-  return hex;
-}
-
-std::vector<std::byte> from_hex(const std::string& hex) {
-  std::vector<std::byte> bytes(hex.size() / 2);
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    unsigned value = 0;
-    const char* const first = hex.data() + 2 * i;
-    std::from_chars(first, first + 2, value, 16);
-    bytes[i] = static_cast<std::byte>(value);
-  }
-  return bytes;
 }
 
 template <class Value>
@@ -62,8 +43,8 @@ StudyRow study_from(const Json& line) {
                  line.at("protocol_sha256"),
                  {}};
   for (const Json& surface : line.at("surfaces")) {
-    const auto bytes = decompressed(from_hex(surface.at("zstd_hex")), surface.at("size"),
-                                    surface.at("file").get<std::string>());
+    const auto bytes = decompressed(core::from_hex(surface.at("zstd_hex").get<std::string>()),
+                                    surface.at("size"), surface.at("file").get<std::string>());
     SurfaceRow row{surface.at("file"), surface.at("sha256"), {}};
     std::ranges::transform(bytes, std::back_inserter(row.bytes), std::to_integer<char>);
     study.surfaces.push_back(std::move(row));
@@ -182,7 +163,7 @@ std::string to_line(const StudyRow& study) {
         {{"file", surface.file},
          {"sha256", surface.sha256},
          {"size", surface.bytes.size()},
-         {"zstd_hex", to_hex(compressed(std::as_bytes(std::span{surface.bytes})))}});
+         {"zstd_hex", core::to_hex(compressed(std::as_bytes(std::span{surface.bytes})))}});
   }
   return dumped(line);
 }

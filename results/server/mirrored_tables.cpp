@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <span>
 
 #include "core/files/sha256.hpp"
+#include "core/text/hexadecimal.hpp"
+#include "core/text/plain_text.hpp"
 #include "results/store/schema.hpp"
 #include "results/store_error.hpp"
 namespace tapstudy::results {
@@ -88,36 +90,19 @@ std::string unescaped(std::string_view field) {
   return text;
 }
 
-void append_bytes(const std::vector<std::byte>& bytes, std::string& line) {
-  constexpr std::string_view digits = "0123456789abcdef";
-  line += R"(\\x)";
-  for (const std::byte byte : bytes) {
-    line += digits[std::to_integer<std::size_t>(byte >> 4)];
-    line += digits[std::to_integer<std::size_t>(byte & std::byte{15})];
-  }
-}
-
-std::vector<std::byte> bytes_of(std::string_view hexadecimal) {
-  hexadecimal.remove_prefix(hexadecimal.starts_with("\\x") ? 2 : 0);
-  std::vector<std::byte> bytes(hexadecimal.size() / 2);
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    unsigned value = 0;
-    const char* const begin = hexadecimal.data() + 2 * i;
-    std::from_chars(begin, begin + 2, value, 16);
-    bytes[i] = static_cast<std::byte>(value);
-  }
-  return bytes;
+std::vector<std::byte> bytes_of(std::string_view written) {
+  written.remove_prefix(written.starts_with("\\x") ? 2 : 0);
+  return core::from_hex(written);
 }
 
 template <class Number>
 Number number_of(std::string_view text, const MirroredTable& table) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size()) {
+  const auto number = core::number_in<Number>(text);
+  if (!number) {
     throw StoreError{
         fmt::format("the server's table {} holds '{}' where a number is", table.name, text)};
   }
-  return number;
+  return *number;
 }
 
 void append_field(ColumnType type, int column, Statement& row, std::string& line) {
@@ -136,17 +121,8 @@ void append_field(ColumnType type, int column, Statement& row, std::string& line
       append_escaped(row.text(column), line);
       return;
     case ColumnType::bytes:
-      append_bytes(row.bytes(column), line);
+      line += R"(\\x)" + core::to_hex(row.bytes(column));
   }
-}
-
-// PostgreSQL writes the least digits that say a number, and inf as Infinity.
-double real_of(const std::string& text, const MirroredTable& table) {
-  if (text == "Infinity" || text == "-Infinity") {
-    return text.front() == '-' ? -std::numeric_limits<double>::infinity()
-                               : std::numeric_limits<double>::infinity();
-  }
-  return number_of<double>(text, table);
 }
 
 void bind_field(const MirroredTable& table, ColumnType type, std::string_view field,
@@ -161,7 +137,7 @@ void bind_field(const MirroredTable& table, ColumnType type, std::string_view fi
       insert.bind(number_of<std::int64_t>(text, table));
       return;
     case ColumnType::real:
-      insert.bind(real_of(text, table));
+      insert.bind(number_of<double>(text, table));
       return;
     case ColumnType::text:
       insert.bind(text);
@@ -171,6 +147,15 @@ void bind_field(const MirroredTable& table, ColumnType type, std::string_view fi
   }
 }
 }  // namespace
+
+std::string MirroredTable::definitions() const {
+  std::string list;
+  for (const MirroredColumn& column : columns) {
+    list += fmt::format(", {} {}", column.name,
+                        std::ranges::find(types, column.type, &TypeRow::type)->of_server);
+  }
+  return list;
+}
 
 std::string MirroredTable::column_list() const {
   std::string list;
@@ -187,74 +172,6 @@ std::string MirroredTable::select() const {
 const std::vector<MirroredTable>& mirrored_tables() {
   static const std::vector<MirroredTable> tables = tables_of_schema();
   return tables;
-}
-
-std::string server_schema_sql() {
-  std::string sql = fmt::format(
-      R"sql(-- tapstudy's tables of a PostgreSQL server, and the roles that use them: psql -f FILE, once.
-BEGIN;
-CREATE SCHEMA tapstudy;
-CREATE TABLE tapstudy.schema_version (version integer NOT NULL);
-INSERT INTO tapstudy.schema_version VALUES ({});
--- One row a study directory: a site's name, and which of its studies.
-CREATE TABLE tapstudy.store (
-  store_id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
-  site text NOT NULL,
-  title text NOT NULL,
-  protocol_sha256 text NOT NULL,
-  created_utc text NOT NULL,
-  UNIQUE (site, protocol_sha256, created_utc)
-);
--- How far each table of a store is here: rows beyond are of a push that has not ended.
-CREATE TABLE tapstudy.mirrored (
-  store_id bigint NOT NULL REFERENCES tapstudy.store,
-  table_name text NOT NULL,
-  last_row_id bigint NOT NULL,
-  sha256 text NOT NULL,
-  PRIMARY KEY (store_id, table_name)
-);
--- Which row of a study's balanced orders each participant of each site has.
-CREATE TABLE tapstudy.assigned_row (
-  protocol_sha256 text NOT NULL,
-  title text NOT NULL,
-  row integer NOT NULL,
-  site text NOT NULL,
-  participant_id text NOT NULL,
-  assigned_utc timestamp NOT NULL DEFAULT (now() AT TIME ZONE 'utc'),
-  PRIMARY KEY (protocol_sha256, row),
-  UNIQUE (protocol_sha256, site, participant_id)
-);
-)sql",
-      schema_version);
-  for (const MirroredTable& table : mirrored_tables()) {
-    sql += fmt::format(
-        "CREATE TABLE tapstudy.{} (store_id bigint NOT NULL REFERENCES tapstudy.store, row_id "
-        "bigint "
-        "NOT NULL",
-        table.name);
-    for (const MirroredColumn& column : table.columns) {
-      sql += fmt::format(", {} {}", column.name,
-                         std::ranges::find(types, column.type, &TypeRow::type)->of_server);
-    }
-    sql += ", PRIMARY KEY (store_id, row_id));\n";
-  }
-  sql += R"sql(-- A site adds rows and changes none, but for how far its pushes are. A reader reads.
-DO $$ BEGIN
-  IF NOT EXISTS (SELECT FROM pg_roles WHERE rolname = 'tapstudy_site') THEN
-    CREATE ROLE tapstudy_site NOLOGIN;
-  END IF;
-  IF NOT EXISTS (SELECT FROM pg_roles WHERE rolname = 'tapstudy_reader') THEN
-    CREATE ROLE tapstudy_reader NOLOGIN;
-  END IF;
-END $$;
-GRANT USAGE ON SCHEMA tapstudy TO tapstudy_site, tapstudy_reader;
-GRANT SELECT ON ALL TABLES IN SCHEMA tapstudy TO tapstudy_site, tapstudy_reader;
-GRANT INSERT ON ALL TABLES IN SCHEMA tapstudy TO tapstudy_site;
-REVOKE INSERT ON tapstudy.schema_version FROM tapstudy_site;
-GRANT UPDATE ON tapstudy.mirrored TO tapstudy_site;
-COMMIT;
-)sql";
-  return sql;
 }
 
 std::string copy_line(const MirroredTable& table, Statement& row) {

@@ -21,19 +21,18 @@ struct MirroredTable {
   bool has_own_id{};  // a column is SQLite's number of the row
 
   std::string column_list() const;  // comma-separated
+  std::string definitions() const;  // the same with the server's types, each after a comma
   std::string select() const;       // the number, then the columns, in the order of the numbers
 };
 
 // All tables of a store of this version, those that refer to others after them.
 const std::vector<MirroredTable>& mirrored_tables();
 
-// The SQL that makes a server's tables and the two roles that use them, for its administrator.
-std::string server_schema_sql();
-
 // A row of `select` as a line of PostgreSQL's COPY, without the store's number, with a line end.
 std::string copy_line(const MirroredTable& table, Statement& row);
 // The same line, bound in its order. Throws StoreError if it is none of the table's.
 void bind_copy_line(const MirroredTable& table, std::string_view line, Statement& insert);
-// The rows up to the last one, as one text: the SHA-256 of the text of those before and its line.
+// The hash of a table up to a row: the SHA-256 of the hash up to the row before ("" at the first)
+// and the row's copy_line.
 std::string hash_after(const std::string& hash_before, const std::string& line);
 }  // namespace tapstudy::results

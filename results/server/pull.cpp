@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/error.hpp"
+#include "core/files/output_files.hpp"
 #include "results/server/mirrored_tables.hpp"
 #include "results/server/server_schema.hpp"
 #include "results/store/schema.hpp"
@@ -16,6 +17,14 @@
 namespace tapstudy::results {
 namespace {
 namespace fs = std::filesystem;
+
+// A study directory whose rows a server has.
+struct ServedStore {
+  std::string id;  // the server's number
+  std::string site;
+  std::string title;
+  std::string protocol_sha256;
+};
 
 std::string insert_sql(const MirroredTable& table) {
   std::string values;
@@ -33,18 +42,15 @@ void pull_table(const ServedStore& store, const MirroredTable& table, ServerConn
       "SELECT last_row_id, sha256 FROM tapstudy.mirrored WHERE store_id = $1 AND table_name = $2",
       {store.id, table.name});
   const std::string last_row = mark.at(0).at(0).value();
-  {
-    Database* const into = &database;
-    const std::string sql = insert_sql(table);
-    server.copy_out(fmt::format("COPY (SELECT row_id, {} FROM tapstudy.{} WHERE store_id = {} AND "
-                                "row_id <= {} ORDER BY row_id) TO STDOUT",
-                                table.column_list(), table.name, store.id, last_row),
-                    [&](std::string_view line) {
-                      Statement insert{*into, sql};
-                      bind_copy_line(table, line, insert);
-                      insert.finish();
-                    });
-  }
+  const std::string sql = insert_sql(table);
+  server.copy_out(fmt::format("COPY (SELECT row_id, {} FROM tapstudy.{} WHERE store_id = {} AND "
+                              "row_id <= {} ORDER BY row_id) TO STDOUT",
+                              table.column_list(), table.name, store.id, last_row),
+                  [&](std::string_view line) {
+                    Statement insert{database, sql};
+                    bind_copy_line(table, line, insert);
+                    insert.finish();
+                  });
   std::string hash;
   Statement row{database, table.select()};
   while (row.step()) {
@@ -55,8 +61,7 @@ void pull_table(const ServedStore& store, const MirroredTable& table, ServerConn
                                  server.name(), table.name, store.site)};
   }
 }
-}  // namespace
-
+// Those of one study, by site and age.
 std::vector<ServedStore> stores_of_study(ServerConnection& server, const std::string& study) {
   check_server_schema(server);
   std::vector<ServedStore> found;
@@ -87,6 +92,7 @@ std::vector<ServedStore> stores_of_study(ServerConnection& server, const std::st
   return found;
 }
 
+// What its directory is called among those of its study: its site and the server's number.
 std::string name_of_directory(const ServedStore& store) {
   std::string name = store.site + "-" + store.id;
   std::ranges::replace_if(
@@ -95,6 +101,7 @@ std::string name_of_directory(const ServedStore& store) {
   return name.front() == '.' ? "_" + name : name;
 }
 
+// The same rows as at the end of its last push, and the journal made from them.
 void pull_store(const ServedStore& store, ServerConnection& server, const std::string& directory) {
   {
     ServerTransaction snapshot{server, "ISOLATION LEVEL REPEATABLE READ READ ONLY"};
@@ -111,5 +118,18 @@ void pull_store(const ServedStore& store, ServerConnection& server, const std::s
   }
   const StudyRow study = Store::open_existing(directory).study();
   Store::open_or_create(directory, study);  // which writes the journal
+}
+}  // namespace
+
+std::vector<std::string> pull_study(ServerConnection& server, const std::string& study,
+                                    const std::string& directory) {
+  std::vector<std::string> names;
+  for (const ServedStore& store : stores_of_study(server, study)) {
+    names.push_back(name_of_directory(store));
+    const std::string whole = (fs::path{directory} / names.back()).string();
+    core::make_directories(whole);
+    pull_store(store, server, whole);
+  }
+  return names;
 }
 }  // namespace tapstudy::results

@@ -146,7 +146,7 @@ ServerConnection::ServerConnection(const std::string& url) {
   name_ = connection_ ? name_of(connection_.get()) : url;
   if (!connection_ || PQstatus(connection_.get()) != CONNECTION_OK ||
       PQsetnonblocking(connection_.get(), 1) != 0) {
-    fail(connection_ ? one_line(PQerrorMessage(connection_.get())) : "out of memory");
+    fail();
   }
   if (!is_local && PQsslInUse(connection_.get()) == 0) {
     fail("the connection is not encrypted");
@@ -156,6 +156,10 @@ ServerConnection::ServerConnection(const std::string& url) {
 
 void ServerConnection::fail(const std::string& message) const {
   throw StoreError{name_ + ": " + message};
+}
+
+void ServerConnection::fail() const {
+  fail(one_line(PQerrorMessage(connection_.get())));
 }
 
 void ServerConnection::wait_for(short events) {
@@ -169,7 +173,7 @@ void ServerConnection::wait_for(short events) {
     fail(ready == 0 ? "the server has not answered for a minute" : "the connection was lost");
   }
   if ((socket.revents & POLLIN) != 0 && PQconsumeInput(connection_.get()) == 0) {
-    fail(one_line(PQerrorMessage(connection_.get())));
+    fail();
   }
 }
 
@@ -181,7 +185,7 @@ void ServerConnection::flush() {
     left = PQflush(connection_.get());
   }
   if (left < 0) {
-    fail(one_line(PQerrorMessage(connection_.get())));
+    fail();
   }
 }
 
@@ -192,17 +196,27 @@ ServerConnection::Result ServerConnection::next_result() {
   return Result{PQgetResult(connection_.get())};
 }
 
-void ServerConnection::finish_command() {
+void ServerConnection::finish_command(const std::function<void(const pg_result&)>& on_result) {
   std::string message;
   while (const Result result = next_result()) {
     const ExecStatusType status = PQresultStatus(result.get());
     if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK && message.empty()) {
       message = one_line(PQresultErrorMessage(result.get()));
     }
+    if (on_result) {
+      on_result(*result);
+    }
   }
   if (!message.empty()) {
     fail(message);
   }
+}
+
+void ServerConnection::check_sent(int code) {
+  if (code == 0) {
+    fail();
+  }
+  flush();
 }
 
 namespace {
@@ -226,35 +240,23 @@ std::vector<ServerConnection::Cells> ServerConnection::rows(
                                   : PQsendQueryParams(connection_.get(), sql.c_str(),
                                                       static_cast<int>(values.size()), nullptr,
                                                       values.data(), nullptr, nullptr, 0);
-  if (sent == 0) {
-    fail(one_line(PQerrorMessage(connection_.get())));
-  }
-  flush();
+  check_sent(sent);
   std::vector<Cells> rows;
-  std::string message;
-  while (const Result result = next_result()) {
-    const ExecStatusType status = PQresultStatus(result.get());
-    if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK && message.empty()) {
-      message = one_line(PQresultErrorMessage(result.get()));
-    }
-    add_rows(result.get(), rows);
-  }
-  if (!message.empty()) {
-    fail(message);
-  }
+  finish_command([&](const pg_result& result) { add_rows(&result, rows); });
   return rows;
 }
 
-void ServerConnection::copy_in(const std::string& sql, std::string_view lines) {
-  if (PQsendQuery(connection_.get(), sql.c_str()) == 0) {
-    fail(one_line(PQerrorMessage(connection_.get())));
-  }
-  flush();
-  if (const Result begun = next_result(); PQresultStatus(begun.get()) != PGRES_COPY_IN) {
+void ServerConnection::begin_copy(const std::string& sql, int status) {
+  check_sent(PQsendQuery(connection_.get(), sql.c_str()));
+  if (const Result begun = next_result(); PQresultStatus(begun.get()) != status) {
     const std::string message = one_line(PQresultErrorMessage(begun.get()));
     finish_command();
     fail(message);
   }
+}
+
+void ServerConnection::copy_in(const std::string& sql, std::string_view lines) {
+  begin_copy(sql, PGRES_COPY_IN);
   constexpr std::size_t at_once = 1 << 16;
   while (!lines.empty()) {
     const std::string_view part = lines.substr(0, at_once);
@@ -276,15 +278,7 @@ void ServerConnection::copy_in(const std::string& sql, std::string_view lines) {
 
 void ServerConnection::copy_out(const std::string& sql,
                                 const std::function<void(std::string_view)>& on_line) {
-  if (PQsendQuery(connection_.get(), sql.c_str()) == 0) {
-    fail(one_line(PQerrorMessage(connection_.get())));
-  }
-  flush();
-  if (const Result begun = next_result(); PQresultStatus(begun.get()) != PGRES_COPY_OUT) {
-    const std::string message = one_line(PQresultErrorMessage(begun.get()));
-    finish_command();
-    fail(message);
-  }
+  begin_copy(sql, PGRES_COPY_OUT);
   char* line = nullptr;
   int length = PQgetCopyData(connection_.get(), &line, 1);
   while (length >= 0) {

@@ -38,10 +38,14 @@ class ServerConnection {
   };
   using Result = std::unique_ptr<pg_result, Clear>;
   [[noreturn]] void fail(const std::string& message) const;
+  [[noreturn]] void fail() const;  // with what libpq says of the connection
   void wait_for(short events);
   void flush();
   Result next_result();
-  void finish_command();  // throws what the server said last
+  // The results of a command that was sent, to its end; then throws the first error among them.
+  void finish_command(const std::function<void(const pg_result&)>& on_result = {});
+  void check_sent(int code);
+  void begin_copy(const std::string& sql, int status);
   std::unique_ptr<pg_conn, Close> connection_;
   std::string name_;
 };

@@ -89,10 +89,8 @@ Summary summary_of_server(const ReportOptions& options, const std::vector<std::s
   results::ServerConnection server{options.directories.front()};
   const core::ScratchDirectory scratch;
   std::vector<std::string> directories;
-  for (const results::ServedStore& store : results::stores_of_study(server, options.study)) {
-    directories.push_back((fs::path{scratch.path()} / results::name_of_directory(store)).string());
-    core::make_directories(directories.back());
-    results::pull_store(store, server, directories.back());
+  for (const std::string& name : results::pull_study(server, options.study, scratch.path())) {
+    directories.push_back((fs::path{scratch.path()} / name).string());
   }
   return summary_of_stores(options, directories, only);
 }

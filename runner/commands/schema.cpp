@@ -8,7 +8,7 @@
 
 #include "core/files/output_files.hpp"
 #include "protocols/reader/read_protocol.hpp"
-#include "results/server/mirrored_tables.hpp"
+#include "results/server/server_schema.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/commands/key_reference.hpp"
 #include "runner/session/devices/rigs.hpp"

@@ -38,16 +38,12 @@ void push(const SiteOptions& options) {
 
 void pull(const SiteOptions& options) {
   results::ServerConnection server{options.server};
-  const auto stores = results::stores_of_study(server, options.study);
+  std::vector<std::string> names;
   core::write_new_directory(options.out, [&](const std::string& unfinished) {
-    for (const results::ServedStore& store : stores) {
-      const std::string directory = (fs::path{unfinished} / name_of_directory(store)).string();
-      core::make_directories(directory);
-      results::pull_store(store, server, directory);
-    }
+    names = results::pull_study(server, options.study, unfinished);
   });
-  for (const results::ServedStore& store : stores) {
-    fmt::print("{}/study.db\n", (fs::path{options.out} / name_of_directory(store)).string());
+  for (const std::string& name : names) {
+    fmt::print("{}/study.db\n", (fs::path{options.out} / name).string());
   }
 }
 

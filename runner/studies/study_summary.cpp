@@ -530,7 +530,7 @@ std::set<std::string> versions_before(int major, int minor,
   return versions;
 }
 
-// Empty: nothing was otherwise.
+// Empty: no session of these stimuli was run by an earlier version.
 std::string coupled_fingers_before(const protocols::Protocol& protocol,
                                    const std::vector<results::SessionRow>& sessions) {
   const std::set<std::string> versions = versions_before(0, 2, sessions);
@@ -567,23 +567,25 @@ bool is_automatic_sheet(const protocols::Stimulus& stimulus) {
          core::is_sheet(stimulus.plate->shape);
 }
 
-// What was otherwise of some stimuli until version 0.`minor`; words: with {} for their names.
-struct Otherwise {
+// What version 0.`minor` changed for some stimuli; the message has {} for their names.
+struct RenderingChange {
   int minor;
   bool (*concerns)(const protocols::Stimulus& stimulus);
-  const char* words;
+  const char* message;
 };
-constexpr std::array otherwise{
-    Otherwise{4, is_on_springs,
-              "springs under {} held parts of triangles where a region's edge cuts through them, "
-              "so that frequencies may have been some per cent higher; from 0.4.0 on they hold the "
-              "nodes that a rigid fixation of the region holds"},
-    Otherwise{5, is_automatic_sheet,
-              "mesh: auto took tetrahedra for {}, and takes shell elements from 0.5.0 on, whose "
-              "frequencies differ by up to what the study's accuracy allows"}};
+constexpr std::array rendering_changes{
+    RenderingChange{
+        4, is_on_springs,
+        "springs under {} held parts of triangles where a region's edge cuts through them, "
+        "so that frequencies may have been some per cent higher; from 0.4.0 on they hold the "
+        "nodes that a rigid fixation of the region holds"},
+    RenderingChange{
+        5, is_automatic_sheet,
+        "mesh: auto took tetrahedra for {}, and takes shell elements from 0.5.0 on, whose "
+        "frequencies differ by up to what the study's accuracy allows"}};
 
-// Empty: nothing was otherwise.
-std::string stimuli_before(const Otherwise& change, const protocols::Protocol& protocol,
+// Empty: no session of these stimuli was run by an earlier version.
+std::string stimuli_before(const RenderingChange& change, const protocols::Protocol& protocol,
                            const std::vector<results::SessionRow>& sessions) {
   const std::set<std::string> versions = versions_before(0, change.minor, sessions);
   std::vector<std::string> names;
@@ -595,14 +597,14 @@ std::string stimuli_before(const Otherwise& change, const protocols::Protocol& p
   return versions.empty() || names.empty()
              ? ""
              : fmt::format("sessions run by tapstudy {}: ", fmt::join(versions, ", ")) +
-                   fmt::format(fmt::runtime(change.words), fmt::join(names, ", "));
+                   fmt::format(fmt::runtime(change.message), fmt::join(names, ", "));
 }
 }  // namespace
 
 std::vector<std::string> rendered_by_earlier_versions(
     const protocols::Protocol& protocol, const std::vector<results::SessionRow>& sessions) {
   std::vector<std::string> said{coupled_fingers_before(protocol, sessions)};
-  for (const Otherwise& change : otherwise) {
+  for (const RenderingChange& change : rendering_changes) {
     said.push_back(stimuli_before(change, protocol, sessions));
   }
   std::erase(said, "");

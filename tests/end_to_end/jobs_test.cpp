@@ -1,16 +1,10 @@
-#include <cstdlib>
-
-#include "support/built_paths.hpp"
 #include "support/catch.hpp"
 #include "support/processes.hpp"
-#include "support/texts.hpp"
 using namespace tapstudy;
 
 namespace {
 void run_jobs(const std::string& by) {
-  setenv("TAPSTUDY_PROGRAM", testing::tapstudy_program().c_str(), 1);
-  const auto result = testing::run_program(
-      {"/usr/bin/python3", "-B", testing::source("tests/jobs/jobs_test.py"), by});
+  const auto result = testing::run_script("jobs/jobs_test.py", {by});
   INFO(result.standard_error);
   CHECK(result.exit_code == 0);
 }

@@ -51,9 +51,7 @@ std::string markers_of_masking(const TempDirectory& directory) {
   return kinds;
 }
 void hear_with(const std::string& script) {
-  setenv("TAPSTUDY_PROGRAM", testing::tapstudy_program().c_str(), 1);
-  const auto heard =
-      testing::run_program({"/usr/bin/python3", "-B", testing::source("tests/audio/" + script)});
+  const auto heard = testing::run_script("audio/" + script);
   INFO(heard.standard_output << heard.standard_error);
   CHECK(heard.exit_code == 0);
 }

@@ -16,13 +16,8 @@ const std::string whole_sessions = "whole_sessions_test.py";
 
 // All of a script's tests, or those of one class.
 void pass(const std::string& script, const std::string& tests = "") {
-  setenv("TAPSTUDY_PROGRAM", testing::tapstudy_program().c_str(), 1);
-  std::vector<std::string> command{"/usr/bin/python3", "-B",
-                                   testing::source("tests/pages/" + script)};
-  if (!tests.empty()) {
-    command.push_back(tests);
-  }
-  const auto result = testing::run_program(command);
+  const auto result = testing::run_script(
+      "pages/" + script, tests.empty() ? std::vector<std::string>{} : std::vector{tests});
   INFO(result.standard_output << result.standard_error);
   CHECK(result.exit_code == 0);
 }
@@ -116,9 +111,7 @@ TEST_CASE("operators, vanished pages and killed browsers interrupt a session tha
 // A session at a pseudo-terminal, as a participant has it.
 TEST_CASE("the paper's three studies are answered at a terminal, which may stop or vanish",
           "[end_to_end][slow]") {
-  setenv("TAPSTUDY_PROGRAM", testing::tapstudy_program().c_str(), 1);
-  const auto result = testing::run_program(
-      {"/usr/bin/python3", "-B", testing::source("tests/terminal/terminal_session_test.py")});
+  const auto result = testing::run_script("terminal/terminal_session_test.py");
   INFO(result.standard_output << result.standard_error);
   CHECK(result.exit_code == 0);
 }

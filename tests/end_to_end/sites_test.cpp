@@ -1,17 +1,11 @@
-#include <cstdlib>
-
-#include "support/built_paths.hpp"
 #include "support/catch.hpp"
 #include "support/processes.hpp"
-#include "support/texts.hpp"
 using namespace tapstudy;
 
 // A server is started for each, and people's sessions are simulated.
 namespace {
 void run_sites(const std::string& test) {
-  setenv("TAPSTUDY_PROGRAM", testing::tapstudy_program().c_str(), 1);
-  const auto result = testing::run_program(
-      {"/usr/bin/python3", "-B", testing::source("tests/sites/sites_test.py"), test});
+  const auto result = testing::run_script("sites/sites_test.py", {test});
   INFO(result.standard_error);
   CHECK(result.exit_code == 0);
 }

@@ -4,6 +4,8 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include <cstdlib>
+
 #include "support/built_paths.hpp"
 #include "support/catch.hpp"
 #include "support/texts.hpp"
@@ -39,5 +41,11 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const std::
 ProgramResult tapstudy(std::vector<std::string> arguments, const std::string& input) {
   arguments.insert(arguments.begin(), tapstudy_program());
   return run_program(arguments, input);
+}
+
+ProgramResult run_script(const std::string& script, std::vector<std::string> arguments) {
+  setenv("TAPSTUDY_PROGRAM", tapstudy_program().c_str(), 1);
+  arguments.insert(arguments.begin(), {"/usr/bin/python3", "-B", source("tests/" + script)});
+  return run_program(arguments);
 }
 }  // namespace tapstudy::testing

@@ -11,4 +11,6 @@ struct ProgramResult {
 ProgramResult run_program(const std::vector<std::string>& arguments, const std::string& input = "");
 // Runs the tapstudy that was built with these tests.
 ProgramResult tapstudy(std::vector<std::string> arguments, const std::string& input = "");
+// Runs a script of tests/ by Python; it finds that tapstudy in TAPSTUDY_PROGRAM.
+ProgramResult run_script(const std::string& script, std::vector<std::string> arguments = {});
 }  // namespace tapstudy::testing

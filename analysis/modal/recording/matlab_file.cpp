@@ -199,9 +199,7 @@ std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
   });
   constexpr std::array names{"fs", "rate", "rate_hz", "sample_rate", "sampling_rate"};
   const auto is_rate = [&](const MatlabArray& array) {
-    std::string name = array.own_name();
-    std::ranges::transform(name, name.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string name = core::lower_case(array.own_name());
     return array.size() == 1 && std::ranges::find(names, name) != names.end();
   };
   for (const MatlabArray& array : arrays) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 #include <utility>
 
@@ -50,7 +49,7 @@ MeasuredUnit measured(const Unit& unit, const std::string& text) {
   return {text, unit.quantity, unit.si};
 }
 
-// "Acc (g)", "Acc [g]", and a unit by itself
+// What stands in brackets at the end: "Acc (g)", "Acc [g]"; empty: nothing.
 std::string in_brackets(const std::string& header) {
   constexpr std::array<std::pair<char, char>, 2> brackets{{{'(', ')'}, {'[', ']'}}};
   for (const auto& [open, close] : brackets) {
@@ -63,18 +62,18 @@ std::string in_brackets(const std::string& header) {
 }
 
 std::string folded(const std::string& text) {
-  std::string small = with_ascii_micro(text);
-  std::ranges::transform(small, small.begin(), [](unsigned char c) {
-    return static_cast<char>(c < 0x80 ? std::tolower(c) : c);
-  });
-  return small;
+  return core::lower_case(with_ascii_micro(text));
+}
+
+std::optional<MeasuredUnit> unit_called(const std::string& text) {
+  const auto* const known = std::ranges::find(units, folded(text), &Unit::text);
+  return known == units.end() ? std::nullopt : std::optional{measured(*known, text)};
 }
 }  // namespace
 
 std::optional<MeasuredUnit> unit_in(const std::string& header) {
   if (const std::string text = in_brackets(header); !text.empty()) {
-    const auto* const known = std::ranges::find(units, folded(text), &Unit::text);
-    return known == units.end() ? std::nullopt : std::optional{measured(*known, text)};
+    return unit_called(text);
   }
   const std::string name = folded(header);
   const Unit* longest = nullptr;
@@ -90,7 +89,7 @@ std::optional<MeasuredUnit> unit_in(const std::string& header) {
 
 std::string why_not_si(const Recording& recording, Quantity quantity) {
   const auto unit =
-      unit_in(recording.unit.empty() ? recording.channel : "(" + recording.unit + ")");
+      recording.unit.empty() ? unit_in(recording.channel) : unit_called(recording.unit);
   if (!unit) {
     return "";
   }

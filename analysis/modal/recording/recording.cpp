@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -194,10 +193,7 @@ constexpr std::array<std::pair<const char*, Quantity>, 3> quantities{
      {"displacement", Quantity::displacement}}};
 
 std::string lower_case_ending(const std::string& file) {
-  std::string ending = std::filesystem::path{file}.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return core::lower_case(std::filesystem::path{file}.extension().string());
 }
 }  // namespace
 

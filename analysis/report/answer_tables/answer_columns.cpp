@@ -9,19 +9,13 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 bool is_same_word(std::string_view one, std::string_view other) {
-  return std::ranges::equal(one, other, [](unsigned char a, unsigned char b) {
-    return std::tolower(a) == std::tolower(b);
-  });
+  return core::lower_case(one) == core::lower_case(other);
 }
 
 namespace {
-std::string in_small_letters(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 using Header = std::vector<std::string>;
 using Names = std::vector<std::string_view>;
 
@@ -195,7 +189,7 @@ bool is_no_count(const std::string& name) {
   static constexpr std::array parts{"trial", "index",    "order",    "time",
                                     "block", "position", "duration", "session"};
   static constexpr std::array words{"rt", "age", "id", "nr", "no", "run", "row", "date", "seed"};
-  const std::string small = in_small_letters(name);
+  const std::string small = core::lower_case(name);
   const auto is_within = [&](const char* part) { return small.find(part) != std::string::npos; };
   const auto is_a_word = [&](const std::string& word) {
     const std::size_t at = small.find(word);
@@ -219,7 +213,7 @@ bool is_share(const std::string& name) {
 bool may_be_counts(const std::string& name) {
   static constexpr std::array whole{"", "0", "size", "num", "number", "times", "total", "cases"};
   static constexpr std::array parts{"count", "freq", "anzahl", "weight"};
-  const std::string small = in_small_letters(name);
+  const std::string small = core::lower_case(name);
   const auto is_small = [&](const char* word) { return small == word; };
   const auto is_within = [&](const char* word) { return small.find(word) != std::string::npos; };
   return std::ranges::any_of(whole, is_small) || std::ranges::any_of(parts, is_within) ||
@@ -276,7 +270,7 @@ void check_may_not_tell_people(const Header& header, const AnswerPlaces& places,
                                                   "respondent",  "prolific", "worker"};
   constexpr std::array<std::string_view, 5> names{"vp", "vpn", "pid", "responseid", "observer"};
   for (std::size_t place = 0; place < header.size(); ++place) {
-    const std::string small = in_small_letters(header[place]);
+    const std::string small = core::lower_case(header[place]);
     const auto is_within = [&](std::string_view word) {
       return small.find(word) != std::string::npos;
     };

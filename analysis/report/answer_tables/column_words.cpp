@@ -8,16 +8,13 @@
 
 #include "analysis/report/answer_tables/answer_checks.hpp"
 #include "analysis/report/answer_tables/foreign_text.hpp"
+#include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
 // Of a word; most are plain, and reading them as people do takes a hundred times longer.
-std::string folded(std::string word) {
+std::string folded(const std::string& word) {
   const auto is_plain = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
-  if (!std::ranges::all_of(word, is_plain)) {
-    return as_read(word);
-  }
-  std::ranges::transform(word, word.begin(), [](unsigned char c) { return std::tolower(c); });
-  return word;
+  return std::ranges::all_of(word, is_plain) ? core::lower_case(word) : as_read(word);
 }
 }  // namespace
 
@@ -104,9 +101,9 @@ constexpr std::array<std::string_view, 10> uncounted_stems{
 constexpr std::array<std::string_view, 8> counted_stems{"includ", "inclus", "valid",  "keep",
                                                         "usable", "accept", "finish", "complet"};
 // What became of somebody, as Prolific, Gorilla and others say it in a column of states.
-constexpr std::array<std::string_view, 12> left_stems{"return", "reject",  "timed",  "timeout",
-                                                      "live",   "incompl", "unfini", "partial",
-                                                      "abando", "abort",   "withd",  "cancel"};
+constexpr std::array<std::string_view, 11> left_stems{"return",  "timed",  "timeout", "live",
+                                                      "incompl", "unfini", "partial", "abando",
+                                                      "abort",   "withd",  "cancel"};
 
 bool is_practice_word(const std::string& word) {
   return word == "prac" || begins_with_any(word, practice_stems);

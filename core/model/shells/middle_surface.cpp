@@ -134,7 +134,7 @@ std::set<int> CurvedTriangles::points_near(int fan) const {
   return points;
 }
 
-// That of a paraboloid through the point, fitted to those near it: as good at rims as between
+// The normal of a paraboloid through the point, fitted to those near it: as good at rims as between
 // (Cazals & Pouget 2005, Estimating differential quantities using polynomial fitting).
 Vec3 CurvedTriangles::fitted_normal(int fan) const {
   constexpr double told = 1e-6;
@@ -171,7 +171,7 @@ Vec3 CurvedTriangles::fitted_normal(int fan) const {
   return is_told ? normal : mean;
 }
 
-// That of the circle through the point and its two neighbours on a rim or fold.
+// The tangent of a rim or fold is that of the circle through the point and its two neighbours.
 void CurvedTriangles::find_rims() {
   std::map<int, std::set<int>> neighbours;
   for (const auto& [ends, triangle] : triangle_of_edge_) {
@@ -191,7 +191,7 @@ void CurvedTriangles::find_rims() {
   }
 }
 
-// Where only the other end turns smoothly, that of a circle from there.
+// Where only the other end turns smoothly, the tangent of a circle from there.
 Vec3 CurvedTriangles::tangent_on_rim(int from, int to) const {
   const Vec3 chord = (point_m(to) - point_m(from)).normalized();
   const auto onward = [&](const Vec3& tangent) {

@@ -163,20 +163,27 @@ void share_lines(const std::vector<IdentifiedTap>& taps, PartOfBand& part, TapRe
   }
 }
 
-// The modes of the other parts taken away from each decay, as each was found alone.
+// What the part found in a tap is taken from its decay.
+void take_modes(const PartOfBand& part, std::size_t tap, analysis::FreeDecay& decay) {
+  const auto place = std::ranges::find(part.taps, tap);
+  if (place != part.taps.end()) {
+    const auto k = static_cast<std::size_t>(place - part.taps.begin());
+    decay = analysis::without_modes(std::move(decay), part.modes[k]);
+  }
+}
+
+// The modes that each part found alone are taken from the decays of all others, whose own are then
+// fitted again.
 void free_from_one_another(std::vector<PartOfBand>& parts) {
-  const std::vector<PartOfBand> alone = parts;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    PartOfBand& part = parts[p];
-    for (std::size_t k = 0; k < part.taps.size(); ++k) {
-      for (std::size_t other = 0; other < alone.size(); ++other) {
-        const auto tap = std::ranges::find(alone[other].taps, part.taps[k]);
-        if (other != p && tap != alone[other].taps.end()) {
-          const auto at = static_cast<std::size_t>(tap - alone[other].taps.begin());
-          part.decays[k] =
-              analysis::without_modes(std::move(part.decays[k]), alone[other].modes[at]);
-        }
+  for (PartOfBand& part : parts) {
+    for (const PartOfBand& other : parts) {
+      for (std::size_t k = 0; &other != &part && k < part.taps.size(); ++k) {
+        take_modes(other, part.taps[k], part.decays[k]);
       }
+    }
+  }
+  for (PartOfBand& part : parts) {
+    for (std::size_t k = 0; k < part.taps.size(); ++k) {
       part.modes[k] =
           analysis::with_lines(part.modes[k], part.decays[k], part.band, part.modes[k].lines_hz);
     }

@@ -128,7 +128,7 @@ class Identifier {
       }
     }
   }
-  // Amplitudes are of impact speeds alone; frequencies and damping have no unit of the sensor's.
+  // Amplitudes are told per impact speed; frequencies and damping do not depend on the unit.
   void check_units(const std::vector<MeasuredFile>& files) const {
     if (result_.question.speeds.empty() || result_.question.scale) {
       return;

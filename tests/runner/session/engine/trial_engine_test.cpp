@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -541,6 +542,13 @@ protocols::Protocol with_consent() {
   }
   return protocol;
 }
+
+std::function<void(std::vector<results::FormAnswerRow>)> added_to(
+    std::vector<results::FormAnswerRow>& stored) {
+  return [&stored](const std::vector<results::FormAnswerRow>& rows) {
+    stored.insert(stored.end(), rows.begin(), rows.end());
+  };
+}
 }  // namespace
 
 TEST_CASE("of who takes no part nothing is asked or stored but the answer that says so",
@@ -564,10 +572,7 @@ TEST_CASE("of who takes no part nothing is asked or stored but the answer that s
 TEST_CASE("a block is presented to those who answered so, now or in an earlier session",
           "[runner][session]") {
   const protocols::Protocol protocol = with_consent();
-  protocols::Schedule schedule(3);
-  for (std::size_t i = 0; i < schedule.size(); ++i) {
-    schedule[i].block = protocol.blocks[i].name;
-  }
+  const protocols::Schedule schedule = trials_of({"yes", "no", "all"});
   const auto presented = [&](runner::BetweenTrials& between) {
     std::vector<std::string> blocks;
     for (const protocols::PlannedTrial& trial : between.presented(schedule)) {
@@ -577,9 +582,7 @@ TEST_CASE("a block is presented to those who answered so, now or in an earlier s
   };
   runner::SessionStates states{1, [] { return 0.0; }};
   std::vector<results::FormAnswerRow> stored;
-  const auto store = [&](const std::vector<results::FormAnswerRow>& rows) {
-    stored.insert(stored.end(), rows.begin(), rows.end());
-  };
+  const auto store = added_to(stored);
   Willing person{{{"agree", "yes"}, {"hand", "no"}}};
   runner::BetweenTrials now{{protocol, person, states, store, [] {}}, {}};
   now.begin(true);
@@ -598,9 +601,7 @@ TEST_CASE("what is presented rests on answers before the first trial, whatever i
   const protocols::Schedule schedule = trials_of({"yes", "no", "all"});
   runner::SessionStates states{1, [] { return 0.0; }};
   std::vector<results::FormAnswerRow> stored;
-  const auto store = [&](const std::vector<results::FormAnswerRow>& rows) {
-    stored.insert(stored.end(), rows.begin(), rows.end());
-  };
+  const auto store = added_to(stored);
   Willing person{{{"agree", "yes"}, {"hand", "no"}}};
   runner::BetweenTrials now{{protocol, person, states, store, [] {}}, {}};
   now.begin(true);

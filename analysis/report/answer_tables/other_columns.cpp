@@ -363,6 +363,20 @@ void check_begins_not_with_practice(const FileAnswers& of, const OtherColumn& co
                     column.description, *text, column.name));
   }
 }
+
+void check_column(const FileAnswers& of, const OtherColumn& column, const AnswerReading& reading,
+                  bool are_participants_known) {
+  if (reading.columns.correct.empty()) {
+    check_says_no_other_right(of, column);
+    check_names_no_other_answer(of, column, reading);
+  }
+  if (!are_participants_known && reading.columns.participant.empty()) {
+    check_tells_no_people(of, column);
+  }
+  if (!reading.counts_practice) {
+    check_begins_not_with_practice(of, column);
+  }
+}
 }  // namespace
 
 void check_other_columns(const std::vector<OtherColumns>& files,
@@ -373,16 +387,7 @@ void check_other_columns(const std::vector<OtherColumns>& files,
   for (const OtherColumns& file : files) {
     const FileAnswers of = answers_of(file, answers, origins);
     for (const OtherColumn& column : of.columns) {
-      if (reading.columns.correct.empty()) {
-        check_says_no_other_right(of, column);
-        check_names_no_other_answer(of, column, reading);
-      }
-      if (!are_participants_known && reading.columns.participant.empty()) {
-        check_tells_no_people(of, column);
-      }
-      if (!reading.counts_practice) {
-        check_begins_not_with_practice(of, column);
-      }
+      check_column(of, column, reading, are_participants_known);
     }
     if (has_runs_alone) {
       check_has_each_trial_once(of);

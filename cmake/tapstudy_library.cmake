@@ -34,6 +34,11 @@ function(optimise_cgal_lightly)
   endforeach()
 endfunction()
 
+# Optimising what a sanitizer has instrumented is two thirds of its build. What computes little is built
+# without; physics and statistics are not: Eigen would be a hundred times slower.
+set(TAPSTUDY_UNOPTIMISED "^$" CACHE STRING
+  "Regular expression of libraries, protocols among them, that are not optimised")
+
 function(tapstudy_library name)
   cmake_parse_arguments(ARG "" "" "LINK;PRIVATE" ${ARGN})
   string(REGEX REPLACE "^(analysis|runner)_" "\\1/" folder ${name})
@@ -47,10 +52,15 @@ function(tapstudy_library name)
   target_include_directories(tapstudy_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(tapstudy_${name} PUBLIC ${ARG_LINK}
     PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:tapstudy_flags>)
-  # What nearly every source includes, compiled once and for all of them.
-  if(name STREQUAL "core")
-    target_precompile_headers(tapstudy_core PRIVATE <Eigen/Core> <fmt/format.h> <fmt/ranges.h>)
+  # What nearly every source includes, compiled once for all that are optimised alike.
+  set(first core)
+  if(name MATCHES "${TAPSTUDY_UNOPTIMISED}")
+    target_compile_options(tapstudy_${name} PRIVATE -O0)
+    set(first protocols)
+  endif()
+  if(name STREQUAL first)
+    target_precompile_headers(tapstudy_${name} PRIVATE <Eigen/Core> <fmt/format.h> <fmt/ranges.h>)
   else()
-    target_precompile_headers(tapstudy_${name} REUSE_FROM tapstudy_core)
+    target_precompile_headers(tapstudy_${name} REUSE_FROM tapstudy_${first})
   endif()
 endfunction()

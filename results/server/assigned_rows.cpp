@@ -32,6 +32,16 @@ UNION ALL
 SELECT protocol_sha256 FROM tapstudy.assigned_row WHERE title = $2 AND protocol_sha256 <> $1
 LIMIT 1
 )sql";
+constexpr const char* namesake_sql = R"sql(
+SELECT site, participant_id FROM tapstudy.assigned_row
+  WHERE protocol_sha256 = $1 AND lower(participant_id) = lower($3)
+    AND (site <> $2 OR participant_id <> $3)
+UNION ALL
+SELECT site, participant_id FROM tapstudy.participant JOIN tapstudy.store USING (store_id)
+  WHERE protocol_sha256 = $1 AND lower(participant_id) = lower($3)
+    AND (site <> $2 OR participant_id <> $3)
+LIMIT 1
+)sql";
 }  // namespace
 
 int assigned_row(const StudyOfServer& study, const std::string& site,
@@ -49,6 +59,13 @@ int assigned_row(const StudyOfServer& study, const std::string& site,
                     server.name(), study.title, other[0][0].value().substr(0, 8))};
   }
   std::vector<std::string> who{study.protocol_sha256, site, participant_id};
+  const auto namesake = server.rows(namesake_sql, who);
+  if (!namesake.empty()) {
+    throw StoreError{fmt::format(
+        "{}: {} has a participant {}: ids differ among the sites of a study, and by more than "
+        "letter case",
+        server.name(), namesake[0][0].value(), namesake[0][1].value())};
+  }
   auto row = server.rows(own_row_sql, who);
   if (row.empty()) {
     who.push_back(study.title);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
@@ -22,6 +24,8 @@ struct StoreOfSite {
   std::string id;  // the server's number
   std::string site;
   std::string directory;
+  std::string title;
+  std::string protocol_sha256;
 };
 
 StoreOfSite store_of_site(const std::string& directory, const std::string& site, Store& store,
@@ -39,7 +43,54 @@ StoreOfSite store_of_site(const std::string& directory, const std::string& site,
       "SELECT store_id FROM tapstudy.store WHERE site = $1 AND protocol_sha256 = $2 AND "
       "created_utc = $3",
       key);
-  return {found.at(0).at(0).value(), site, directory};
+  return {found.at(0).at(0).value(), site, directory, study.text(0), study.text(1)};
+}
+
+// What others have shown of the same study.
+constexpr const char* others_sessions_sql = R"sql(
+SELECT site, participant_id, seed, started_utc
+  FROM tapstudy.session JOIN tapstudy.store USING (store_id) JOIN tapstudy.mirrored USING (store_id)
+  WHERE store_id <> $1 AND protocol_sha256 = $2 AND table_name = 'session' AND row_id <= last_row_id
+  ORDER BY store_id, row_id
+)sql";
+
+// A report takes no session twice, and no two participants of one name. Nobody can delete a row, so
+// that a store which does not fit the others is refused before others see it.
+void check_fits_others(const StoreOfSite& of_site, Store& store, ServerConnection& server) {
+  std::set<std::string> participants;
+  std::set<std::pair<std::string, std::string>> sessions;
+  Statement own = store.query("SELECT participant_id, seed, started_utc FROM session");
+  while (own.step()) {
+    participants.insert(own.text(0));
+    sessions.emplace(fmt::format("{}", own.integer(1)), own.text(2));
+  }
+  for (const auto& row : server.rows(others_sessions_sql, {of_site.id, of_site.protocol_sha256})) {
+    const std::string& site = row[0].value();
+    const std::string& participant = row[1].value();
+    if (sessions.contains({row[2].value(), row[3].value()})) {
+      throw StoreError{fmt::format(
+          "{}: {} has pushed the session of {} that {} holds: is one a copy of the other, or "
+          "was this pushed under the name --site {} before?",
+          server.name(), site, row[3].value(), of_site.directory, site)};
+    }
+    if (participants.contains(participant)) {
+      throw StoreError{fmt::format(
+          "{}: {} has pushed a participant {}, as {} holds one: ids differ among the sites of a "
+          "study (redact --prefix {} makes such a copy)",
+          server.name(), site, participant, of_site.directory, of_site.site)};
+    }
+  }
+}
+
+std::optional<StudyOfOtherText> other_text(const StoreOfSite& store, ServerConnection& server) {
+  const auto found = server.rows(
+      "SELECT title, protocol_sha256, site FROM tapstudy.store WHERE title = $1 AND "
+      "protocol_sha256 <> $2 ORDER BY store_id LIMIT 1",
+      {store.title, store.protocol_sha256});
+  if (found.empty()) {
+    return std::nullopt;
+  }
+  return StudyOfOtherText{found[0][0].value(), found[0][1].value(), found[0][2].value()};
 }
 
 // Held until the connection ends, however it ends.
@@ -130,13 +181,18 @@ class TablePush {
   bool was_shown_{false};
 };
 
-void show(const StoreOfSite& store, const std::vector<Mark>& marks, ServerConnection& server) {
+// One push after the other, so that of two which do not fit one another the second is refused.
+void show(const StoreOfSite& of_site, const std::vector<Mark>& marks, Store& store,
+          ServerConnection& server) {
   ServerTransaction all{server};
+  server.rows("SELECT pg_advisory_xact_lock(hashtext('tapstudy.show'), hashtext($1))",
+              {of_site.protocol_sha256});
+  check_fits_others(of_site, store, server);
   for (std::size_t i = 0; i < marks.size(); ++i) {
     server.rows(
         "INSERT INTO tapstudy.mirrored VALUES ($1, $2, $3, $4) ON CONFLICT (store_id, table_name) "
         "DO UPDATE SET last_row_id = excluded.last_row_id, sha256 = excluded.sha256",
-        {store.id, mirrored_tables()[i].name, std::to_string(marks[i].last_row), marks[i].hash});
+        {of_site.id, mirrored_tables()[i].name, std::to_string(marks[i].last_row), marks[i].hash});
   }
   all.commit();
 }
@@ -172,6 +228,8 @@ Pushed push_store(const std::string& directory, const std::string& site, ServerC
   store.in_read_transaction([&] {
     const StoreOfSite of_site = store_of_site(directory, site, store, server);
     lock(of_site, server);
+    check_fits_others(of_site, store, server);
+    pushed.other_text = other_text(of_site, server);
     const std::size_t all = rows_of(store);
     std::vector<Mark> marks;
     for (const MirroredTable& table : mirrored_tables()) {
@@ -184,7 +242,7 @@ Pushed push_store(const std::string& directory, const std::string& site, ServerC
       marks.push_back(push.finish());
       pushed.rows += push.added();
     }
-    show(of_site, marks, server);
+    show(of_site, marks, store, server);
   });
   return pushed;
 }

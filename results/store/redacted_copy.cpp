@@ -63,7 +63,7 @@ INSERT INTO tick_statistics SELECT trial_id, ticks, late, skipped, saturated, dr
 )sql";
 
 void fill_database(Database& database, const std::string& original, const StudyRow& study,
-                   const std::set<std::pair<std::string, std::string>>& kept_items) {
+                   const Redaction& redaction) {
   database.run("PRAGMA temp_store = MEMORY");
   Statement{database, "ATTACH ? AS original"}.bind(original).finish();
   const std::int64_t version = database.pragma("original.user_version");
@@ -73,14 +73,17 @@ void fill_database(Database& database, const std::string& original, const StudyR
   database.run(schema_sql);
   database.run(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", application_id,
                            schema_version));
+  Statement{database,
+            "CREATE TEMP TABLE pseudonym AS SELECT participant_id, printf('%s-%03d', ?, "
+            "row_number() OVER (ORDER BY min(session_id))) AS pseudonym, "s +
+                (has_groups ? "group_name, group_assignment "
+                            : "NULL AS group_name, NULL AS group_assignment ") +
+                "FROM original.participant LEFT JOIN original.session USING (participant_id) "
+                "GROUP BY participant_id"}
+      .bind(redaction.prefix)
+      .finish();
   database.run(
-      "CREATE TEMP TABLE pseudonym AS SELECT participant_id, "
-      "printf('person-%03d', row_number() OVER (ORDER BY min(session_id))) AS pseudonym, "s +
-      (has_groups ? "group_name, group_assignment "
-                  : "NULL AS group_name, NULL AS group_assignment ") +
-      "FROM original.participant LEFT JOIN original.session USING (participant_id) "
-      "GROUP BY participant_id; "
-      "CREATE TEMP TABLE planned AS SELECT session_id, " +
+      "CREATE TEMP TABLE planned AS SELECT session_id, "s +
       (has_planned_sessions ? "planned_session, protocol_text "
                             : "NULL AS planned_session, NULL AS protocol_text ") +
       "FROM original.session; "
@@ -88,7 +91,7 @@ void fill_database(Database& database, const std::string& original, const StudyR
   Statement{database, "INSERT INTO temp.protocol_file VALUES (?)"}
       .bind(fs::path{study.protocol_file}.filename().string())
       .finish();
-  for (const auto& [form, item] : kept_items) {
+  for (const auto& [form, item] : redaction.kept_items) {
     Statement{database, "INSERT INTO temp.kept VALUES (?, ?)"}.bind(form).bind(item).finish();
   }
   database.run(copy_sql);
@@ -97,12 +100,12 @@ void fill_database(Database& database, const std::string& original, const StudyR
 }  // namespace
 
 void write_redacted_copy(const std::string& directory, const std::string& copy,
-                         const std::set<std::pair<std::string, std::string>>& kept_items) {
+                         const Redaction& redaction) {
   const StudyRow study = Store::open_existing(directory).study();
   {
     Database database{(fs::path{copy} / "study.db").string(), Database::Access::write};
     fill_database(database, fs::absolute(fs::path{directory} / "study.db").string(), study,
-                  kept_items);
+                  redaction);
   }
   StudyRow copied = study;
   copied.protocol_file = fs::path{study.protocol_file}.filename().string();

@@ -13,6 +13,7 @@
 #include "results/server/push.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
+#include "runner/session/engine/session_row.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -32,6 +33,13 @@ void push(const SiteOptions& options) {
   Progress progress{"pushing rows of " + options.study};
   const results::Pushed pushed =
       results::push_store(options.study, options.site, server, progress.count());
+  if (pushed.other_text) {
+    warn(
+        fmt::format("{} has '{}' with another text of the protocol, too (SHA-256 {}…, of {}): a "
+                    "report takes one of them (--study)",
+                    server.name(), pushed.other_text->title,
+                    pushed.other_text->protocol_sha256.substr(0, 8), pushed.other_text->site));
+  }
   fmt::print("{} of {} rows added: {} has all of {}\n", pushed.rows, pushed.all_rows, server.name(),
              options.study);
 }
@@ -59,6 +67,7 @@ results::StudyOfServer study_of(const std::string& path) {
 }
 
 void schedule(const SiteOptions& options) {
+  check_participant_id("--participant", options.participant);
   const results::StudyOfServer study = study_of(options.study);
   results::ServerConnection server{options.server};
   fmt::print("{}\n", results::assigned_row(study, options.site, options.participant, server));

@@ -2,12 +2,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "analysis/report/writers.hpp"
@@ -27,17 +31,19 @@ namespace tapstudy::runner {
 struct PublishedReport {
   bool is_there{};
   std::string not_compared{};              // why, in words; empty: it was
+  std::string not_fitted{};                // why R did not fit its models again; empty: it did
   std::vector<std::string> differences{};  // "report.json /blocks/0/…: 61, made anew 41", files
   // Sentences on earlier versions that this one adds, and that were left out of the comparison.
   std::vector<std::string> added{};
 };
 // Compares what report.json, the tables beside it and the page hold; where it was made is left out,
-// what R fitted is taken as it is there, and what it leaves out (--only) is not missed; one that
-// differs and is older than the journal's last entry is not compared. Throws StoreError if
-// report.json is none.
+// what R fits now is that to a thousandth, as it is of R's version, and what it leaves out (--only)
+// is not missed; one that differs and is older than the journal's last entry is not compared.
+// Throws StoreError if report.json is none.
 PublishedReport published_report(const std::string& directory, results::Store& store);
 
 namespace {
+using analysis::MixedModelRow;
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
@@ -199,6 +205,61 @@ std::string directory_of_report(const std::string& study) {
   std::error_code ignored;
   return fs::exists(folder / "report.json", ignored) ? folder.string() : study;
 }
+bool is_fitted(const MixedModelRow& row) {
+  return row.estimate || row.p;
+}
+
+bool are_close(const std::optional<double>& stated, const std::optional<double>& anew) {
+  constexpr double relative = 1e-3;  // other versions of R end their iterations elsewhere
+  constexpr double absolute = 1e-4;
+  return stated.has_value() == anew.has_value() &&
+         (!stated || std::abs(*stated - *anew) <=
+                         absolute + relative * std::max(std::abs(*stated), std::abs(*anew)));
+}
+
+// Holds the fitted rows of a report against those of the same models that R has fitted now.
+void compare_models(const std::vector<MixedModelRow>& stated,
+                    const std::vector<MixedModelRow>& anew, std::vector<std::string>& differences) {
+  const auto key = [](const MixedModelRow& row) {
+    return std::tuple{row.block, row.model, row.term};
+  };
+  std::map<std::tuple<std::string, std::string, std::string>, const MixedModelRow*> found;
+  for (const MixedModelRow& row : anew) {
+    found.emplace(key(row), &row);
+  }
+  for (const MixedModelRow& row : stated) {
+    const auto again = found.find(key(row));
+    const bool is_same = again != found.end() && are_close(row.estimate, again->second->estimate) &&
+                         are_close(row.standard_error, again->second->standard_error) &&
+                         are_close(row.statistic, again->second->statistic) &&
+                         are_close(row.p, again->second->p);
+    if (is_fitted(row) && !is_same) {
+      differences.push_back(
+          fmt::format("mixed_models.csv, {} of {}: R fits another model now", row.term, row.block));
+    }
+  }
+}
+
+// As the report in the directory has them, so that all its files are held against one another;
+// without an R the fits are only taken from there, which is said.
+std::vector<MixedModelRow> checked_models(const std::string& directory, const results::Table& data,
+                                          PublishedReport& found) {
+  std::vector<MixedModelRow> stated;
+  try {
+    stated = mixed_models_of_report(directory);
+  } catch (const core::InvalidInput& error) {
+    found.differences.emplace_back(error.what());
+  }
+  if (std::ranges::any_of(stated, is_fitted)) {
+    const std::vector<MixedModelRow> anew = fit_mixed_models_in_r(data);
+    if (!anew.empty() && anew.back().block.empty()) {
+      found.not_fitted = anew.back().note;
+    } else {
+      compare_models(stated, anew, found.differences);
+    }
+  }
+  return stated;
+}
 }  // namespace
 
 PublishedReport published_report(const std::string& study_directory, results::Store& store) {
@@ -215,9 +276,9 @@ PublishedReport published_report(const std::string& study_directory, results::St
   analysis::Summary summary;
   try {
     mode = results::mode_from(published.at("modes").get<std::string>());
-    summary =
-        summary_of_study({{study_directory, &store}}, mode, Detail::all, {},
-                         [&](const results::Table&) { return mixed_models_of_report(directory); });
+    summary = summary_of_study(
+        {{study_directory, &store}}, mode, Detail::all, {},
+        [&](const results::Table& data) { return checked_models(directory, data, found); });
   } catch (const core::Error& error) {  // of another version
     found.not_compared = error.what();
     return found;
@@ -301,6 +362,10 @@ std::string print_published(const PublishedReport& report) {
       "differs: ", "places where its report differs from a regenerated one (is it older?)");
   for (const std::string& sentence : report.added) {
     fmt::print("report.json      lacks what this version says of earlier ones: {}\n", sentence);
+  }
+  if (!report.not_fitted.empty()) {
+    fmt::print("report.json      its mixed models are taken as they stand there: {}\n",
+               report.not_fitted);
   }
   if (report.differences.empty()) {
     fmt::print("report.json      its tables and page: identical to a regenerated report\n");

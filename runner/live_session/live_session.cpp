@@ -220,6 +220,21 @@ void add_note(const BegunSession& session, results::Store& store) {
   }
 }
 
+// Orders are balanced where each is used once.
+void tell_who_has_order(const results::SessionRow& session, results::Store& store) {
+  const std::map<std::string, std::string> excluded = store.excluded_participants();
+  for (const results::SessionRow& other : store.sessions()) {
+    if (other.participant_id != session.participant_id && other.mode == session.mode &&
+        other.order_index == session.order_index && !excluded.contains(other.participant_id)) {
+      warn(
+          fmt::format("--row: row {} is participant {}'s, too; orders are balanced only where each "
+                      "is used once",
+                      session.order_index + 1, other.participant_id));
+      return;
+    }
+  }
+}
+
 protocols::Schedule schedule_of(const SessionPlan& plan, const protocols::Protocol& protocol,
                                 const std::optional<results::SessionRow>& earlier) {
   return earlier ? make_schedule(protocol, plan.seed, plan.order_index, earlier->planned_order)
@@ -262,6 +277,9 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
       resume(*earlier, protocol, store, session);
     }
     take_up_session(request, protocol, earlier, store, session);
+    if (request.order_index) {
+      tell_who_has_order(session.row, store);
+    }
     store.add_session(session.row);
   });
   add_note(session, store);
@@ -272,7 +290,7 @@ namespace {
 // All checks possible before the device and the store are opened.
 void check(const LiveSession& live) {
   check_has_blocks(live.protocol);
-  check_participant_id(live.request.participant_id);
+  check_participant_id("--participant", live.request.participant_id);
   static_cast<void>(asked_group(live.request, live.protocol));
   check_fits(live.protocol, live.rig);
   if (live.console) {

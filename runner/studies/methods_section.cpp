@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <ctime>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -36,7 +37,7 @@ namespace {
 // The participants of a group, or all where there are none (nullptr).
 struct GroupMembers {
   const protocols::Group* group{};
-  std::set<std::string> participants;
+  std::map<std::string, int> participants;  // and which of the balanced orders each had
 };
 
 std::vector<GroupMembers> members_of_groups(const Protocol& protocol,
@@ -44,51 +45,65 @@ std::vector<GroupMembers> members_of_groups(const Protocol& protocol,
                                             const std::set<std::string>& participants) {
   std::vector<GroupMembers> all;
   for (const protocols::Group* const group : protocols::groups_of(protocol)) {
-    all.push_back({group, group == nullptr ? participants : std::set<std::string>{}});
+    all.push_back({group, {}});
     for (const results::SessionRow& session : sessions) {
-      if (group != nullptr && session.group && session.group->name == group->name &&
-          participants.contains(session.participant_id)) {
-        all.back().participants.insert(session.participant_id);
+      const bool is_member =
+          group == nullptr || (session.group && session.group->name == group->name);
+      if (is_member && participants.contains(session.participant_id)) {
+        all.back().participants.emplace(session.participant_id, session.order_index);
       }
     }
   }
   return all;
 }
 
-// Of each group that does the block, as many participants as it has.
-std::vector<std::size_t> asked_of(const Block& block, const std::vector<GroupMembers>& groups) {
-  std::vector<std::size_t> counts;
+// Of those that do the block.
+std::size_t asked_of(const Block& block, const std::vector<GroupMembers>& groups) {
+  std::size_t count = 0;
   for (const GroupMembers& members : groups) {
-    if (protocols::does(members.group, block)) {
-      counts.push_back(members.participants.size());
-    }
+    count += protocols::does(members.group, block) ? members.participants.size() : 0;
   }
-  return counts;
+  return count;
 }
 
-std::size_t sum(const std::vector<std::size_t>& counts) {
-  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
-}
-
-// Orders that so many participants of a group were dealt.
+// How many participants of a group had each of the orders of a balanced design.
 struct DealtOrders {
   int orders{};
-  std::size_t participants{};
+  std::map<std::vector<std::size_t>, int> participants;  // by what stood where
+
+  int all() const {
+    return std::accumulate(participants.begin(), participants.end(), 0,
+                           [](int sum, const auto& of) { return sum + of.second; });
+  }
+  bool are_balanced() const {
+    return all() % orders == 0 && participants.size() >= static_cast<std::size_t>(orders) &&
+           std::ranges::all_of(participants, [&](const auto& of) {
+             return of.second == participants.begin()->second;
+           });
+  }
 };
 
-// Only whole sets of orders are balanced, in each group.
+// order_of: of a participant with this order index.
+DealtOrders dealt_orders(int orders, const GroupMembers& members,
+                         const std::function<std::vector<std::size_t>(int)>& order_of) {
+  DealtOrders dealt{orders, {}};
+  for (const auto& [participant, order_index] : members.participants) {
+    ++dealt.participants[order_of(order_index)];
+  }
+  return dealt;
+}
+
 CitingText describe_williams_orders(const std::vector<DealtOrders>& groups) {
-  const auto is_incomplete = [](const DealtOrders& dealt) {
-    return dealt.participants % static_cast<std::size_t>(dealt.orders) != 0;
-  };
-  const auto broken = std::ranges::find_if(groups, is_incomplete);
+  const auto broken = std::ranges::find_if(
+      groups, [](const DealtOrders& dealt) { return dealt.all() > 0 && !dealt.are_balanced(); });
   const char* const whose = groups.size() > 1 ? " of a group" : "";
   return broken == groups.end()
              ? citing(", in orders balanced for immediate sequence over participants{} ({})", whose,
                       "Williams 1949"_source)
              : citing(
                    ", in orders of a balanced design ({}) that {}{} do not complete, of {} orders",
-                   "Williams 1949"_source, counted(broken->participants, "participant"), whose,
+                   "Williams 1949"_source,
+                   counted(static_cast<std::size_t>(broken->all()), "participant"), whose,
                    broken->orders);
 }
 
@@ -108,8 +123,32 @@ std::string describe_constraints(const protocols::OrderConstraints& constraints)
   return limits.empty() ? "" : fmt::format(" with {}", fmt::join(limits, " and "));
 }
 
+CitingText describe_williams_order(const Block& block, const Protocol& protocol,
+                                   const std::vector<GroupMembers>& groups) {
+  const auto place = static_cast<std::size_t>(&block - protocol.blocks.data());
+  const std::size_t n = protocols::conditions(block);
+  const auto order_of = [&](int order_index) {
+    const auto conditions = protocols::ordered_conditions(
+        block, protocols::draw_of(protocol.counterbalancing_seed, place, 0,
+                                  protocols::index_in_group(protocol, order_index)));
+    std::vector<std::size_t> order;
+    std::transform(conditions.begin(), conditions.begin() + static_cast<std::ptrdiff_t>(n),
+                   std::back_inserter(order), [](const auto& next) { return next.condition; });
+    return order;
+  };
+  std::vector<DealtOrders> dealt;
+  for (const GroupMembers& members : groups) {
+    if (protocols::does(members.group, block)) {
+      dealt.push_back(
+          dealt_orders(protocols::williams_rows(static_cast<int>(n)), members, order_of));
+    }
+  }
+  return describe_williams_orders(dealt);
+}
+
 // ", in random order"; "" where the block's task has an order of its own.
-CitingText describe_order(const Block& block, const std::vector<std::size_t>& asked) {
+CitingText describe_order(const Block& block, const Protocol& protocol,
+                          const std::vector<GroupMembers>& groups) {
   if (!block.task->uses_order()) {
     return "";
   }
@@ -121,14 +160,8 @@ CitingText describe_order(const Block& block, const std::vector<std::size_t>& as
     case protocols::Order::shuffle_within_repetition:
       return ", in an order that was random within each repetition" +
              describe_constraints(block.constraints);
-    case protocols::Order::williams: {
-      const int orders = protocols::williams_rows(static_cast<int>(protocols::conditions(block)));
-      std::vector<DealtOrders> dealt;
-      std::ranges::transform(asked, std::back_inserter(dealt), [&](std::size_t participants) {
-        return DealtOrders{orders, participants};
-      });
-      return describe_williams_orders(dealt);
-    }
+    case protocols::Order::williams:
+      return describe_williams_order(block, protocol, groups);
   }
   return "";
 }
@@ -142,10 +175,13 @@ CitingText describe_sequence(const Protocol& protocol, const std::string& who,
   if (order.order == protocols::Order::listed) {
     return citing("{} did {}. ", who, core::joined(blocks, ", then "));
   }
+  const auto order_of = [&](int order_index) {
+    return protocols::block_sequence(protocol, 0, order_index);
+  };
   std::vector<DealtOrders> dealt;
   std::ranges::transform(groups, std::back_inserter(dealt), [&](const GroupMembers& members) {
-    return DealtOrders{protocols::balanced_block_orders(protocol, members.group),
-                       members.participants.size()};
+    return dealt_orders(protocols::balanced_block_orders(protocol, members.group), members,
+                        order_of);
   });
   return citing("{} did {}, where '{}' exchanged their places among participants{}. ", who,
                 core::joined(blocks, ", then "), fmt::join(order.blocks, "', '"),
@@ -244,9 +280,8 @@ std::string describe_completion(const Block& block, const results::BlockCourseRo
   return words;
 }
 
-// asked: as many participants of each group that does it.
 CitingText describe_block(const Block& block, const results::BlockCourseRow& done,
-                          const std::vector<std::size_t>& asked) {
+                          const Protocol& protocol, const std::vector<GroupMembers>& groups) {
   const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
   return citing(
       "'{}' ({} of {}{}, {}{}{}{}{}{}{}{}{})", block.name, block.task->name(),
@@ -256,8 +291,8 @@ CitingText describe_block(const Block& block, const results::BlockCourseRow& don
       block.catch_trials ? fmt::format(", {} of them catch trials", block.catch_trials->count) : "",
       block.confidence ? fmt::format(", each with confidence in {} steps", block.confidence->steps)
                        : "",
-      describe_order(block, asked), describe_levels(block), describe_taps(block),
-      describe_practice(block), describe_completion(block, done, sum(asked)));
+      describe_order(block, protocol, groups), describe_levels(block), describe_taps(block),
+      describe_practice(block), describe_completion(block, done, asked_of(block, groups)));
 }
 
 // Letters that stand for something else in each trial, and are what is answered.
@@ -486,7 +521,7 @@ core::CitingText describe_procedure(const Protocol& protocol,
   for (const Block& block : protocol.blocks) {
     const auto row = done.find(block.name);
     if (row != done.end()) {
-      CitingText described = describe_block(block, row->second, asked_of(block, groups));
+      CitingText described = describe_block(block, row->second, protocol, groups);
       if (is_mixed(block, protocol, done)) {
         blocks.back() += citing(", mixed at random with {}", described);
       } else {

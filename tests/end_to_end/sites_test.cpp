@@ -30,3 +30,8 @@ TEST_CASE("a server's roles, certificate and earlier rows refuse what is not the
           "[end_to_end][postgresql]") {
   run_sites("refused");
 }
+
+TEST_CASE("two sites' participants of one name, and a site under two names, are refused by a push",
+          "[end_to_end][postgresql]") {
+  run_sites("namesakes");
+}

@@ -1,4 +1,5 @@
 """Studies of several sites on a real PostgreSQL server, which the tests start, cut off and kill."""
+import json
 import os
 import pathlib
 import pwd
@@ -24,8 +25,8 @@ def tapstudy(*words, **environment):
                           env={**os.environ, **environment})
 
 
-def simulate(directory, *, seed, participants=2):
-    done = tapstudy("simulate", STUDY, "--participants", participants, "--seed", seed, "--out",
+def simulate(directory, *, seed, participants=2, study=STUDY):
+    done = tapstudy("simulate", study, "--participants", participants, "--seed", seed, "--out",
                     directory)
     assert done.returncode == 0, done.stderr
 
@@ -212,7 +213,7 @@ class Sites(unittest.TestCase):
         study = self.directory / "kyoto"
         simulate(study, seed=1)
         self.assertEqual(self.push(study, "kyoto").returncode, 0)
-        who = [(site, f"P{i}") for i in range(4) for site in ("kyoto", "sapporo", "oita")]
+        who = [(site, f"{site}-{i}") for i in range(4) for site in ("kyoto", "sapporo", "oita")]
 
         def ask():
             asking = [subprocess.Popen(
@@ -222,12 +223,44 @@ class Sites(unittest.TestCase):
         rows = ask()
         self.assertEqual(sorted(rows), list(range(1, len(who) + 1)))
         self.assertEqual(ask(), rows)
+        namesake = tapstudy("schedule", STUDY, self.server.url(), "--site", "oita", "--participant",
+                            "KYOTO-1")
+        self.assertEqual(namesake.returncode, 5, namesake.stderr)
+        self.assertIn("kyoto has a participant kyoto-1", namesake.stderr)
         changed = self.directory / "changed.yaml"
         changed.write_text(STUDY.read_text(encoding="utf-8") + "\n# changed\n", encoding="utf-8")
         refused = tapstudy("schedule", changed, self.server.url(), "--site", "oita",
                            "--participant", "P9")
         self.assertEqual(refused.returncode, 5, refused.stderr)
         self.assertIn("another text of the protocol", refused.stderr)
+
+    # What no report could take together is refused by the push, and others see nothing of it.
+    def test_namesakes(self):
+        kyoto, tokyo = self.directory / "kyoto", self.directory / "tokyo"
+        simulate(kyoto, seed=1)
+        simulate(tokyo, seed=2)
+        self.assertEqual(self.push(kyoto, "kyoto").returncode, 0)
+        for directory, site, says in ((kyoto, "Kyoto", "kyoto has pushed the session of"),
+                                      (tokyo, "tokyo", "redact --prefix tokyo")):
+            refused = self.push(directory, site)
+            self.assertEqual(refused.returncode, 5, refused.stdout)
+            self.assertIn(says, refused.stderr)
+        self.assertEqual(len(self.pulled("first")), 1)
+        copy = self.directory / "copy"
+        redacted = tapstudy("redact", tokyo, "--out", copy, "--prefix", "tokyo")
+        self.assertEqual(redacted.returncode, 0, redacted.stderr)
+        self.assertEqual(self.push(copy, "tokyo").returncode, 0)
+        report = tapstudy("report", self.server.url("reader"), "--out", self.directory / "report")
+        self.assertEqual(report.returncode, 0, report.stderr)
+        written = json.loads((self.directory / "report/report.json").read_text(encoding="utf-8"))
+        self.assertEqual(written["participants"], 4)
+
+        changed = self.directory / "changed.yaml"
+        changed.write_text(STUDY.read_text(encoding="utf-8") + "\n# changed\n", encoding="utf-8")
+        simulate(self.directory / "oita", seed=3, study=changed)
+        told = self.push(self.directory / "oita", "oita")
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertIn("another text of the protocol", told.stderr)
 
     # Rights, encryption, passwords, and studies that are not the one that was pushed before.
     def test_refused(self):

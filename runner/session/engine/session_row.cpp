@@ -72,17 +72,16 @@ std::time_t time_from(const std::string& utc) {
   return timegm(&time);
 }
 
-void check_participant_id(const std::string& id) {
+void check_participant_id(const std::string& option, const std::string& id) {
   const auto is_allowed = [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
   };
   if (id == results::missing_in_csv) {
-    throw core::InvalidInput{
-        fmt::format("--participant: '{}' means a missing value in tables", id)};
+    throw core::InvalidInput{fmt::format("{}: '{}' means a missing value in tables", option, id)};
   }
   if (id.empty() || id.size() > 64 || !std::ranges::all_of(id, is_allowed)) {
     throw core::InvalidInput{fmt::format(
-        "--participant: '{}' is not allowed (1 to 64 letters, digits, '-', '_' or '.')", id)};
+        "{}: '{}' is not allowed (1 to 64 letters, digits, '-', '_' or '.')", option, id)};
   }
 }
 

@@ -34,8 +34,8 @@ std::time_t time_from(const std::string& utc);
 results::SessionRow session_row(const SessionPlan& plan, const protocols::Protocol& protocol,
                                 const protocols::Rig& rig, const protocols::Schedule& schedule);
 
-// Throws InvalidInput for an id that is not safe in file names or tables.
-void check_participant_id(const std::string& id);
+// Throws InvalidInput, which names the option, for an id that is not safe in file names or tables.
+void check_participant_id(const std::string& option, const std::string& id);
 // Approximate tapping time of a simulated participant in a trial of the block.
 double simulated_trial_s(const protocols::Protocol& protocol, const protocols::Block& block);
 // Throws InvalidInput if that is so long that the trace would exhaust memory.

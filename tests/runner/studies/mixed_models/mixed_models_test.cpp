@@ -90,6 +90,19 @@ TEST_CASE("the exported script finds what the report says, of all answers that c
   CHECK(verified.exit_code == 0);
   CHECK_THAT(verified.standard_output, Contains("identical to a regenerated report"));
 
+  SECTION("a verification fits them again, and finds what was changed in every file alike") {
+    const std::string p = fmt::format("{}", *std::ranges::find_if(by_script, [](const auto& row) {
+                                               return row.p.has_value();
+                                             })->p);
+    printed(fmt::format("cd '{}/report' && sed -i 's/{}/0.0012345/' report.json mixed_models.csv",
+                        study, p));
+    const auto changed = testing::tapstudy({"verify", study});
+    CHECK(changed.exit_code != 0);
+    CHECK_THAT(changed.standard_output, Contains("R fits another model now"));
+    const auto without = testing::run_program(
+        {"/usr/bin/env", "PATH=" + directory.path(), testing::tapstudy_program(), "verify", study});
+    CHECK_THAT(without.standard_output, Contains("are taken as they stand there: not fitted"));
+  }
   SECTION("without R one line says how to get it, and the rest is reported") {
     const auto without = testing::run_program(
         {"/usr/bin/env", "PATH=" + directory.path(), testing::tapstudy_program(), "report", study,

@@ -1,0 +1,63 @@
+#include "runner/studies/methods_section.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "protocols/schedule/schedule.hpp"
+#include "support/blocks.hpp"
+#include "support/catch.hpp"
+using namespace tapstudy;
+using testing::Names;
+
+namespace {
+// The oracle: each stimulus follows each other equally often.
+bool are_sequences_balanced(const protocols::Protocol& protocol, const std::vector<int>& indices) {
+  std::map<std::pair<std::string, std::string>, int> followed;
+  for (const int order_index : indices) {
+    const Names order =
+        testing::stimuli_of("test", protocols::make_schedule(protocol, 1, order_index));
+    for (std::size_t i = 1; i < order.size(); ++i) {
+      ++followed[{order[i - 1], order[i]}];
+    }
+  }
+  const std::size_t n = protocol.blocks.front().stimuli.size();
+  return followed.size() == n * (n - 1) && std::ranges::all_of(followed, [&](const auto& pair) {
+           return pair.second == followed.begin()->second;
+         });
+}
+}  // namespace
+
+TEST_CASE("methods call an order balanced exactly if it was over those who are reported",
+          "[runner][report]") {
+  const protocols::Protocol protocol = testing::with_blocks({"test"}, "");
+  int balanced = 0;
+  for (const std::vector<int>& indices :
+       std::vector<std::vector<int>>{{0, 1, 2, 3, 4, 5},
+                                     {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11},
+                                     {6, 7, 8, 9, 10, 11},
+                                     {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5},
+                                     {0, 0, 2, 3, 4, 5},  // a row that was given twice
+                                     {0, 1, 2, 3, 4},
+                                     {0, 1, 2, 3, 4, 5, 6}}) {
+    CAPTURE(indices);
+    std::vector<results::SessionRow> sessions;
+    std::set<std::string> participants;
+    for (const int order_index : indices) {
+      results::SessionRow& session = sessions.emplace_back();
+      session.participant_id = "P" + std::to_string(sessions.size());
+      session.order_index = order_index;
+      participants.insert(session.participant_id);
+    }
+    const std::string text = runner::describe_procedure(protocol, sessions, participants,
+                                                        {{"test", {.participants = participants}}})
+                                 .words;
+    INFO(text);
+    const auto says = [&](const char* words) { return text.find(words) != std::string::npos; };
+    const bool is_balanced = are_sequences_balanced(protocol, indices);
+    CHECK(says("balanced for immediate sequence") == is_balanced);
+    CHECK(says("do not complete, of 6 orders") == !is_balanced);
+    balanced += is_balanced ? 1 : 0;
+  }
+  CHECK(balanced == 4);
+}

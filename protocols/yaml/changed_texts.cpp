@@ -39,68 +39,91 @@ std::string without_last_newline(std::string text) {
   return text;
 }
 
-void add_text(const YAML::Node& node, const std::string& path, InData in_data, Leaves& leaves) {
-  const std::size_t first = leaves.texts.size();
-  if (node.IsScalar()) {
-    leaves.texts.push_back({path, without_last_newline(node.Scalar()), node.Mark().line + 1});
-  } else {
-    for (const auto& entry : node) {
-      leaves.texts.push_back({path + "." + entry.first.Scalar(),
-                              without_last_newline(entry.second.Scalar()),
-                              entry.second.Mark().line + 1});
+enum class KeyOrder { of_file, as_read };  // the keys of some mappings have none to the reader
+
+class LeafReader {
+ public:
+  LeafReader(const Translations& translations, KeyOrder order)
+      : translations_{translations}, order_{order} {}
+  void add(const YAML::Node& node, const std::string& path) {
+    const auto text = translations_.texts.find(path);
+    if (text != translations_.texts.end() && can_be_text(node)) {
+      add_text(node, path, text->second);
+      return;
+    }
+    const auto children = children_of(node, path);
+    for (const auto& [child_path, child] : children) {
+      add(child, child_path);
+    }
+    if (children.empty()) {
+      leaves.data.push_back({path, value_of(node, path)});
     }
   }
-  if (in_data == InData::first_text) {
-    leaves.data.push_back({path, leaves.texts[first].value});
-  } else if (in_data == InData::presence) {
-    leaves.data.push_back({path, "given"});
-  }
-}
-
-std::vector<std::pair<std::string, YAML::Node>> children_of(const YAML::Node& node,
-                                                            const std::string& path) {
-  std::vector<std::pair<std::string, YAML::Node>> children;
-  if (node.IsMap()) {
-    for (const auto& entry : node) {
-      const std::string& key = entry.first.Scalar();
-      children.emplace_back(path.empty() ? key : path + "." + key, entry.second);
-    }
-  } else if (node.IsSequence()) {
-    for (std::size_t i = 0; i < node.size(); ++i) {
-      children.emplace_back(fmt::format("{}[{}]", path, i), node[i]);
-    }
-  }
-  return children;
-}
-
-// "1" in quotes is another value than 1.
-std::string value_of(const YAML::Node& node) {
-  if (node.IsScalar()) {
-    return node.Tag() + " " + node.Scalar();
-  }
-  return node.IsMap() ? "{}" : "[]";
-}
-
-void add(const YAML::Node& node, const std::string& path, const Translations& translations,
-         Leaves& leaves) {
-  const auto text = translations.texts.find(path);
-  if (text != translations.texts.end() && can_be_text(node)) {
-    add_text(node, path, text->second, leaves);
-    return;
-  }
-  const auto children = children_of(node, path);
-  for (const auto& [child_path, child] : children) {
-    add(child, child_path, translations, leaves);
-  }
-  if (children.empty()) {
-    leaves.data.push_back({path, value_of(node)});
-  }
-}
-
-Leaves leaves_of(const ReadText& file) {
   Leaves leaves;
-  add(YAML::Load(file.text), "", file.translations, leaves);
-  return leaves;
+
+ private:
+  using Children = std::vector<std::pair<std::string, YAML::Node>>;
+  void add_text(const YAML::Node& node, const std::string& path, InData in_data) {
+    const std::size_t first = leaves.texts.size();
+    if (node.IsScalar()) {
+      leaves.texts.push_back(
+          {path, without_last_newline(scalar(node, path)), node.Mark().line + 1});
+    } else {
+      for (const auto& entry : node) {
+        leaves.texts.push_back({path + "." + entry.first.Scalar(),
+                                without_last_newline(entry.second.Scalar()),
+                                entry.second.Mark().line + 1});
+      }
+    }
+    if (in_data == InData::first_text) {
+      leaves.data.push_back({path, leaves.texts[first].value});
+    } else if (in_data == InData::presence) {
+      leaves.data.push_back({path, "given"});
+    }
+  }
+  Children children_of(const YAML::Node& node, const std::string& path) const {
+    const auto keys = translations_.keys.find({path, node.Mark().pos});
+    const bool has_keys = keys != translations_.keys.end();
+    const auto path_of = [&](const std::string& key) {
+      return path.empty() ? key : path + "." + key;
+    };
+    Children children;
+    if (node.IsMap()) {
+      for (const auto& entry : node) {
+        children.emplace_back(path_of(entry.first.Scalar()), entry.second);
+      }
+    } else if (node.IsSequence()) {
+      for (std::size_t i = 0; i < node.size(); ++i) {
+        children.emplace_back(has_keys ? path_of(keys->second[i]) : fmt::format("{}[{}]", path, i),
+                              node[i]);
+      }
+    }
+    if (has_keys && order_ == KeyOrder::as_read) {  // assigning to a node would change the file's
+      const std::map<std::string, YAML::Node> sorted{children.begin(), children.end()};
+      return {sorted.begin(), sorted.end()};
+    }
+    return children;
+  }
+  // As it was read: whether it is in quotes is no matter, nor how a number is written.
+  std::string value_of(const YAML::Node& node, const std::string& path) const {
+    if (!node.IsScalar()) {
+      return node.IsMap() ? "{}" : node.IsSequence() ? "[]" : "null";
+    }
+    return "'" + scalar(node, path);
+  }
+  const std::string& scalar(const YAML::Node& node, const std::string& path) const {
+    const auto value = translations_.values.find({path, node.Mark().pos});
+    return value == translations_.values.end() ? node.Scalar() : value->second;
+  }
+
+  const Translations& translations_;
+  KeyOrder order_;
+};
+
+Leaves leaves_of(const ReadText& file, KeyOrder order) {
+  LeafReader reader{file.translations, order};
+  reader.add(YAML::Load(file.text), "");
+  return std::move(reader.leaves);
 }
 
 std::map<std::string, Leaf> by_key(const std::vector<Leaf>& leaves) {
@@ -111,7 +134,7 @@ std::map<std::string, Leaf> by_key(const std::vector<Leaf>& leaves) {
   return all;
 }
 
-// Keys whose values are not in both, then where the order begins to differ.
+// Keys whose values are not in both.
 std::vector<std::string> differing_keys(const std::vector<Leaf>& before,
                                         const std::vector<Leaf>& now) {
   std::vector<std::string> keys;
@@ -127,12 +150,17 @@ std::vector<std::string> differing_keys(const std::vector<Leaf>& before,
   };
   add_missing(now, before);
   add_missing(before, now);
-  if (keys.empty() && before != now) {
-    const auto [in_before, in_now] = std::ranges::mismatch(before, now);
-    const Leaf& out_of_place = in_now == now.end() ? *in_before : *in_now;
-    keys.push_back(out_of_place.key + " (its place)");
-  }
   return keys;
+}
+
+// Where the order begins to differ.
+std::vector<std::string> out_of_place(const std::vector<Leaf>& before,
+                                      const std::vector<Leaf>& now) {
+  const auto [in_before, in_now] = std::ranges::mismatch(before, now);
+  if (in_before == before.end() && in_now == now.end()) {
+    return {};
+  }
+  return {(in_now == now.end() ? *in_before : *in_now).key + " (its place)"};
 }
 
 // The first line that differs, of each; empty where one of them has no such line.
@@ -172,8 +200,13 @@ std::vector<ChangedText> changed_texts(const std::vector<Leaf>& before,
 }  // namespace
 
 ChangesOfFile changes_between(const ReadText& before, const ReadText& now) {
-  const Leaves earlier = leaves_of(before);
-  const Leaves later = leaves_of(now);
-  return {differing_keys(earlier.data, later.data), changed_texts(earlier.texts, later.texts)};
+  const Leaves earlier = leaves_of(before, KeyOrder::of_file);
+  const Leaves later = leaves_of(now, KeyOrder::of_file);
+  std::vector<std::string> keys = differing_keys(earlier.data, later.data);
+  if (keys.empty()) {
+    keys = out_of_place(leaves_of(before, KeyOrder::as_read).data,
+                        leaves_of(now, KeyOrder::as_read).data);
+  }
+  return {keys, changed_texts(earlier.texts, later.texts)};
 }
 }  // namespace tapstudy::protocols

@@ -23,7 +23,8 @@ struct ChangesOfFile {
   std::vector<ChangedText> texts;
 };
 
-// What one file says otherwise than an earlier one; comments and layout aside. The order of keys is
-// of the data. Both have been read without a problem.
+// What one file says otherwise than an earlier one, as both were read: comments, layout, quotes and
+// how a number is written aside. The order of what has names is of the data. Both have been read
+// without a problem.
 ChangesOfFile changes_between(const ReadText& before, const ReadText& now);
 }  // namespace tapstudy::protocols

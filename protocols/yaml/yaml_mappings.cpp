@@ -109,6 +109,9 @@ void MapReader::map_or_list(const Key& key, Presence presence, const std::vector
   MapReader inner{mapping, path_of(key.name), pattern_of(key.name), *problems_, translations_};
   inner.list_ = std::make_unique<YAML::Node>(*node);
   read(inner);
+  if (translations_ != nullptr) {
+    translations_->keys[{inner.path_, node->Mark().pos}] = keys;
+  }
 }
 
 void MapReader::map_or_word(const Key& key, Presence presence, const std::string& word,
@@ -331,6 +334,9 @@ void MapReader::reject_unknown(const YAML::Node& node, const std::string& key) {
 }
 
 void MapReader::finish() {
+  if (!has_free_names_ && translations_ != nullptr) {
+    translations_->keys.try_emplace({path_, node_->Mark().pos});
+  }
   std::vector<std::string> seen;
   for (const auto& entry : *node_) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";

@@ -262,6 +262,13 @@ void MapReader::reject_decimal_commas() {
   }
 }
 
+void MapReader::note_value(const YAML::Node& node, const std::string& path,
+                           const std::string& value) {
+  if (translations_ != nullptr) {
+    translations_->values[{path, node.Mark().pos}] = value;
+  }
+}
+
 std::optional<double> MapReader::as_number(const YAML::Node& node, const std::string& path,
                                            const Range& range) {
   const auto whole = node.IsScalar() ? whole_number_in(node.Scalar()) : std::nullopt;
@@ -275,6 +282,7 @@ std::optional<double> MapReader::as_number(const YAML::Node& node, const std::st
     reject_at(node, path, fmt::format("{} is not allowed ({})", value, range.words()));
     return std::nullopt;
   }
+  note_value(node, path, fmt::format("{}", value));
   return value;
 }
 
@@ -310,6 +318,7 @@ int MapReader::integer(const Key& key, int low, int high, std::optional<int> oth
               fmt::format("{} is not allowed (from {} to {})", *value, low, high));
     return low;
   }
+  note_value(*node, path_of(key.name), fmt::format("{}", *value));
   return static_cast<int>(*value);
 }
 
@@ -327,6 +336,8 @@ bool MapReader::yes_or_no(const Key& key, std::optional<bool> otherwise) {
     reject_at(*node, path_of(key.name),
               fmt::format("{} is neither true nor false", kind_of(*node)));
     is_choice_unread_ = true;
+  } else if (node) {
+    note_value(*node, path_of(key.name), fmt::format("{}", value));
   }
   return value;
 }

@@ -28,6 +28,11 @@ struct Translations {
   // By key path, of every text for people that the file has, and of plans: what of it is in the
   // data, too.
   std::map<std::string, InData> texts{};
+  // How the file was read, which its text alone does not say; by key path and place in the text.
+  using Place = std::pair<std::string, int>;
+  std::map<Place, std::string> values{};  // numbers and truth values, however they are written
+  // Mappings in which no order is read; of a list in place of one, what the keys would be.
+  std::map<Place, std::vector<std::string>> keys{};
 };
 // The key paths of those that are given in some languages, but not in this one.
 std::vector<std::string> texts_without(const std::string& language,
@@ -215,6 +220,7 @@ class MapReader {
   const YAML::Node& written() const { return list_ ? *list_ : *node_; }
   std::optional<double> as_number(const YAML::Node& node, const std::string& path,
                                   const Range& range);
+  void note_value(const YAML::Node& node, const std::string& path, const std::string& value);
   void read_inner(const YAML::Node& node, const std::string& path, const std::string& pattern,
                   const ReadMap& read);
   // Each key of a mapping from free names, in the file's order.

@@ -30,6 +30,7 @@
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "results/store/study_queries.hpp"
+#include "runner/session/engine/open_study.hpp"
 #include "runner/session/engine/practice.hpp"
 #include "runner/session/engine/stored_names.hpp"
 #include "runner/studies/methods_section.hpp"
@@ -469,6 +470,11 @@ void check_states_orders(results::Store& later, const std::vector<std::string>& 
   }
 }
 
+bool says_the_same(results::Store& store, const std::string& other_text) {
+  const protocols::ChangesOfFile changes = changes_in(stored_protocol(store), other_text);
+  return changes.data_keys.empty() && changes.texts.empty();
+}
+
 void check_same_protocol(const std::vector<StudyStore>& stores) {
   const results::StudyRow first = stores.front().store->study();
   std::vector<std::string> directories;
@@ -476,7 +482,9 @@ void check_same_protocol(const std::vector<StudyStore>& stores) {
   results::Store* of_linear_ones = nullptr;
   for (const StudyStore& other : stores) {
     const results::StudyRow study = other.store->study();
-    if (study.protocol_sha256 != first.protocol_sha256 || study.surfaces != first.surfaces) {
+    if (study.surfaces != first.surfaces ||
+        (study.protocol_sha256 != first.protocol_sha256 &&
+         !says_the_same(*stores.front().store, study.protocol_text))) {
       throw core::InvalidInput{fmt::format(
           "{} and {} hold different protocols: their answers cannot be put into one report",
           stores.front().directory, other.directory)};

@@ -47,7 +47,7 @@ void refuse_other_data(const std::vector<std::string>& keys, const std::string& 
 
 void say_what_changed(const std::vector<ChangedText>& texts) {
   std::string lines = texts.empty()
-                          ? "the protocol has other comments or another layout"
+                          ? "the protocol is written otherwise and says the same"
                           : "the protocol has other texts than in the session before; they are "
                             "stored with the sessions from now on:";
   for (const ChangedText& text : texts) {

@@ -64,10 +64,47 @@ TEST_CASE("what can be answered, presented or stored is data, whatever its words
       Change{"    repetitions: 2\n", "    repetitions: 3\n", "blocks[0].repetitions"},
       Change{"stimuli: [b, a]", "stimuli: [a, b]", "blocks[0].stimuli[0]"},
       Change{"statement: A is more real.", "statement: B is more real.", "hypotheses[0].statement"},
-      Change{"load: {shipped: nasa_tlx}", "load: {shipped: \"nasa_tlx\"}", "forms.load.shipped"});
+      Change{"mass_kg: 0.058", "mass_kg: 0.0580001", "finger.mass_kg"},
+      Change{"{from: 0.8e10, to: 1.2e10, spacing: log}", "[0.8e10, 1.3e10, log]",
+             "stimuli.c.vary.youngs_modulus_pa.to"});
   const auto found = changes(every_key_text(), testing::replaced(every_key_text(), what, by));
   REQUIRE_FALSE(found.data_keys.empty());
   CHECK(found.data_keys.front() == key);
+}
+
+TEST_CASE("a protocol that is read as the same says the same, however it is written",
+          "[protocols][texts]") {
+  const auto [what, by] =
+      GENERATE(std::pair{"mass_kg: 0.058", "mass_kg: 5.80e-2"},
+               std::pair{"mass_kg: 0.058", "mass_kg: \"0.058\""},
+               std::pair{"participants: 12\n", "participants: 012\n"},
+               std::pair{"steps: 4, low: guessed", "steps: 0x4, low: guessed"},
+               std::pair{"    practice: true\n", "    practice: yes\n"},
+               std::pair{"load: {shipped: nasa_tlx}", "load: {'shipped': \"nasa_tlx\"}"},
+               std::pair{"constraints: {max_run: 1, min_distance: 1}",
+                         "constraints:\n      min_distance: 1\n      max_run: 1"},
+               std::pair{"{from: 0.8e10, to: 1.2e10, spacing: log}", "[8e9, 1.20e10, log]"},
+               std::pair{"middle: [0, 0]}\nrecordings", "middle: [0.0, 0]}\nrecordings"});
+  const auto found = changes(every_key_text(), testing::replaced(every_key_text(), what, by));
+  CHECK(found.data_keys == testing::Names{});
+  CHECK(found.texts.empty());
+}
+
+// "01" and "1" are two names, and what is drawn depends on the order of those of stimuli.
+TEST_CASE("names are as they are written, and in their order", "[protocols][texts]") {
+  const auto with = [](const std::string& group) {
+    return testing::replaced(every_key_text(), "name: trained", "name: " + group);
+  };
+  CHECK(changes(with("01"), with("1")).data_keys == testing::Names{"groups[0].name"});
+  CHECK(changes(with("01"), with("'01'")).data_keys == testing::Names{});
+  const std::string oak =
+      "  oak:\n    youngs_modulus_pa: 1.0e10\n    density_kg_per_m3: 700\n"
+      "    poissons_ratio: 0.3\n    damping: {ratio: 0.02}\n";
+  CHECK_THAT(
+      changes(every_key_text(), testing::replaced(testing::replaced(every_key_text(), oak, ""),
+                                                  "  mdf:\n", oak + "  mdf:\n"))
+          .data_keys.at(0),
+      Contains("its place"));
 }
 
 TEST_CASE("of a text that changed the first line that differs is told, with where it stands",

@@ -55,6 +55,19 @@ TEST_CASE("each session is stored with the texts that it ran under, and what the
   CHECK_THAT(runner::described(changes.texts[0]), Contains("'Which one?' (before: 'Which?')"));
 }
 
+TEST_CASE("a study goes on with its protocol however it is written", "[runner][texts]") {
+  const testing::TempDirectory directory;
+  const protocols::Protocol first = asking("Which?", 2);
+  add_session(directory.path(), first, "P1", 0);
+  const std::string formatted =
+      testing::replaced(testing::replaced(first.text, "mass_kg: 0.058", "mass_kg: '5.80e-2'"),
+                        "order: williams, repetitions: 2", "repetitions: 0x2, \"order\": williams");
+  add_session(directory.path(), protocols::parse_protocol(formatted, "study.yaml"), "P2", 1);
+  results::Store store = results::Store::open_existing(directory.path());
+  CHECK(store.sessions().at(1).protocol_text == formatted);
+  CHECK(runner::verification_of(store, directory.path()).is_sound());
+}
+
 TEST_CASE("a protocol that asks for other data is refused by its keys, and nothing is stored",
           "[runner][texts]") {
   const testing::TempDirectory directory;

@@ -98,8 +98,7 @@ class Store {
   // The participant's latest session, or the latest in which there was a trial.
   std::optional<SessionRow> latest_session(const std::string& participant_id,
                                            bool has_trials = false);
-  // The participant whose name differs from this one in capital letters at most.
-  std::optional<std::string> participant_ignoring_case(const std::string& participant_id);
+  std::vector<std::string> participant_ids();
   // The session in which a trial of that number was presented to the participant last.
   std::optional<std::int64_t> session_of_trial(const std::string& participant_id, int number);
   // Numbers of the trials that the participant has answered, in any session.

@@ -173,12 +173,13 @@ std::optional<SessionRow> Store::latest_session(const std::string& participant_i
   return row.step() ? std::optional{session_from(row, database_.file())} : std::nullopt;
 }
 
-std::optional<std::string> Store::participant_ignoring_case(const std::string& participant_id) {
-  Statement row{database_,
-                "SELECT participant_id FROM participant WHERE participant_id = ? COLLATE NOCASE "
-                "AND participant_id <> ?"};
-  row.bind(participant_id).bind(participant_id);
-  return row.step() ? std::optional{row.text(0)} : std::nullopt;
+std::vector<std::string> Store::participant_ids() {
+  Statement row{database_, "SELECT participant_id FROM participant"};
+  std::vector<std::string> ids;
+  while (row.step()) {
+    ids.push_back(row.text(0));
+  }
+  return ids;
 }
 
 std::optional<std::int64_t> Store::session_of_trial(const std::string& participant_id, int number) {

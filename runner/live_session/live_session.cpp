@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "analysis/report/answer_tables/foreign_text.hpp"
 #include "core/error.hpp"
 #include "device/loop/sleep_inhibitor.hpp"
 #include "protocols/schedule/groups.hpp"
@@ -55,6 +56,16 @@ std::uint64_t drawn_seed() {
   return (static_cast<std::uint64_t>(source()) << 32U) | source();
 }
 
+// Another participant whose id people would read as this one.
+std::optional<std::string> participant_alike(const std::string& id, results::Store& store) {
+  for (const std::string& other : store.participant_ids()) {
+    if (other != id && analysis::first_alike({other, id})) {
+      return other;
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<results::SessionRow> earlier_session(const SessionRequest& request,
                                                    const protocols::Protocol& protocol,
                                                    results::Store& store) {
@@ -65,17 +76,18 @@ std::optional<results::SessionRow> earlier_session(const SessionRequest& request
                     "--resume, or choose another id)",
                     request.participant_id)};
   }
-  const auto alike =
-      earlier ? std::nullopt : store.participant_ignoring_case(request.participant_id);
+  const auto alike = earlier ? std::nullopt : participant_alike(request.participant_id, store);
   if (!earlier && request.resume == Resume::yes) {
     throw core::InvalidInput{fmt::format("participant '{}' has no session to resume{}",
                                          request.participant_id,
                                          alike ? fmt::format(" ('{}' has)", *alike) : "")};
   }
   if (alike) {
-    throw core::InvalidInput{fmt::format(
-        "participant '{}': this study has a '{}' (ids must differ by more than letter case)",
-        request.participant_id, *alike)};
+    throw core::InvalidInput{
+        fmt::format("participant '{}': this study has a '{}', which reads alike: if it is the same "
+                    "person, take "
+                    "that id, else one that differs by more than letter case and zeros of numbers",
+                    request.participant_id, *alike)};
   }
   return earlier;
 }

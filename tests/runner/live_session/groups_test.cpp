@@ -173,3 +173,17 @@ TEST_CASE("a study rebuilt from its journal has the groups", "[runner][groups]")
           laboratory.store.latest_session(participant)->group);
   }
 }
+
+TEST_CASE("somebody whose id reads like another's is asked about", "[runner]") {
+  Laboratory laboratory;
+  laboratory.begin("P01");
+  for (const char* const id : {"P1", "p01", "p1", "P001"}) {
+    CHECK_THROWS_WITH(laboratory.begin(id), Contains("this study has a 'P01', which reads alike"));
+  }
+  CHECK_THROWS_WITH(laboratory.begin("P1", "", runner::Resume::yes),
+                    Contains("has no session to resume ('P01' has)"));
+  for (const char* const id : {"P10", "P11", "01", "P0-1"}) {
+    CHECK_NOTHROW(laboratory.begin(id));
+  }
+  CHECK_NOTHROW(laboratory.begin("P01", "", runner::Resume::yes));
+}

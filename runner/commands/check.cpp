@@ -111,6 +111,7 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
   if (models.bodies_used() == 0) {
     fmt::print("  none: no technique here needs a model\n");
   }
+  fmt::print("{}", describe_real_plates(protocol));
 }
 
 // The bound of a device that acts later than it is told is lower.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@
 #include "core/model/shells/shell_elements.hpp"
 #include "core/techniques/compensated.hpp"
 #include "core/techniques/technique.hpp"
+#include "protocols/tasks/task.hpp"
 #include "runner/session/stimuli/stimulus_family.hpp"
+#include "runner/session/trial_loop/real_plates.hpp"
 #include "runner/studies/counted.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -235,6 +238,40 @@ void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& m
 namespace {
 constexpr double tolerated_error = 0.05;  // of a frequency
 }  // namespace
+
+namespace {
+std::string model_key(const protocols::Protocol& protocol, const std::string& stimulus,
+                      const protocols::AxisValues& values) {
+  return core::content_key(
+      body_spec(protocol, protocols::stimulus_at(protocol, protocol.stimulus(stimulus), values)));
+}
+}  // namespace
+
+std::string describe_real_plates(const protocols::Protocol& protocol) {
+  std::set<std::string> built;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.technique->needs_model()) {
+      for (const auto& values : protocols::table_of_models(protocol, stimulus)) {
+        built.insert(model_key(protocol, stimulus.name, values));
+      }
+    }
+  }
+  const protocols::Protocol reality = with_real_plates(protocol);
+  std::set<std::string> further;
+  for (const protocols::Block& block : protocol.blocks) {
+    for (const auto& one : block.task->remembered(block, protocol.simulation)) {
+      if (one.is_real && !built.contains(model_key(reality, one.stimulus, one.values))) {
+        further.insert(one.stimulus);
+      }
+    }
+  }
+  return further.empty()
+             ? ""
+             : fmt::format(
+                   "  `simulate` also builds the models of the real plates that simulated "
+                   "participants remember: {}\n",
+                   fmt::join(further, ", "));
+}
 
 std::string describe_surfaces(const protocols::Protocol& protocol) {
   std::string lines;

@@ -27,6 +27,10 @@ void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& mod
 void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& models,
                             const protocols::Rig& rig);
 
+// A line that names the real plates that simulated participants remember and no stimulus's model
+// is of; empty without any. Throws as with_real_plates does.
+std::string describe_real_plates(const protocols::Protocol& protocol);
+
 // Lines for each surface file of the protocol that has something in excess of its body, and for
 // each surface that is repaired: what changed.
 std::string describe_surfaces(const protocols::Protocol& protocol);

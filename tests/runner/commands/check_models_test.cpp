@@ -1,8 +1,11 @@
 #include "runner/commands/check_models.hpp"
 
+#include <regex>
+
 #include "core/tick/plate_vibration.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "runner/laboratory/reproduce/paper_protocols.hpp"
+#include "support/blocks.hpp"
 #include "support/built_paths.hpp"
 #include "support/catch.hpp"
 #include "support/processes.hpp"
@@ -94,4 +97,21 @@ TEST_CASE("what a joined body states says nothing about the mesh of the plate th
   CHECK_THAT(runner::note_of_relaxation(stimulus, report),
              Contains("body 1 that cup touches (study.yaml:9:3: plates.tray) is meshed with "
                       "radius_edge_ratio: 4, as 3 takes"));
+}
+
+TEST_CASE("check names the real plates whose models simulate builds beside those of the stimuli",
+          "[end_to_end][check]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  const std::string study = testing::text_with_blocks({"test"}, "");
+  const auto said = [&](const std::string& technique) {
+    testing::write(file, std::regex_replace(study, std::regex{"technique: fem"}, technique));
+    return testing::tapstudy({"check", file}).standard_output;
+  };
+  CHECK_THAT(said("technique: fem"), !Contains("`simulate` also builds"));
+  CHECK_THAT(
+      said("technique: none"),
+      Contains("none: no technique here needs a model\n  `simulate` also builds the models of "
+               "the real plates that simulated participants remember: acrylic_two, "
+               "mdf_three, mdf_two\n"));
 }

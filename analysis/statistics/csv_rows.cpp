@@ -18,11 +18,15 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 // Outside of quotes: commas may be decimal ones beside the others.
 char separator_of(std::string_view header) {
+  constexpr std::string_view before_quote = " \t;,\"";
   std::string outside;
   bool is_quoted = false;
+  char before = ' ';
   for (const char c : header) {
-    is_quoted = is_quoted != (c == '"');
+    const bool may_turn = is_quoted || before_quote.find(before) != std::string_view::npos;
+    is_quoted = is_quoted != (c == '"' && may_turn);
     outside += is_quoted ? ' ' : c;
+    before = c;
   }
   for (const char separator : {'\t', ';'}) {
     if (outside.find(separator) != std::string::npos) {
@@ -36,9 +40,7 @@ char separator_of(std::string_view header) {
 
 class CsvReader {
  public:
-  explicit CsvReader(std::string file) : file_{std::move(file)} {
-    csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI);
-  }
+  explicit CsvReader(std::string file) : file_{std::move(file)} { csv_init(&parser_, strict); }
   ~CsvReader() { csv_free(&parser_); }
   CsvReader(const CsvReader&) = delete;
   CsvReader& operator=(const CsvReader&) = delete;
@@ -89,13 +91,25 @@ class CsvReader {
       row_.line = line_;
     }
     is_inside_row_ = true;
-    for (const std::string_view part : {line, std::string_view{"\n"}}) {
-      if (csv_parse(&parser_, part.data(), part.size(), end_cell, end_row, this) != part.size()) {
-        refuse();
-      }
+    for (auto quote = line.find('"'); quote != std::string_view::npos; quote = line.find('"')) {
+      parse(line.substr(0, quote));
+      // programs that never quote separate by tabs
+      const bool is_character =
+          text_.separator == '\t' && parser_.quoted == 0 && parser_.entry_pos > 0;
+      csv_set_opts(&parser_, is_character ? CSV_STRICT_FINI : strict);
+      parse("\"");
+      csv_set_opts(&parser_, strict);
+      line.remove_prefix(quote + 1);
     }
+    parse(line);
+    parse("\n");
     // an empty line ends no row, for there is none
     is_inside_row_ = is_inside_row_ && !(row_.cells.empty() && parser_.quoted == 0);
+  }
+  void parse(std::string_view part) {
+    if (csv_parse(&parser_, part.data(), part.size(), end_cell, end_row, this) != part.size()) {
+      refuse();
+    }
   }
   [[noreturn]] void refuse() {
     throw core::InvalidInput{
@@ -113,6 +127,7 @@ class CsvReader {
     reader.is_inside_row_ = false;
   }
 
+  static constexpr unsigned char strict = CSV_STRICT | CSV_STRICT_FINI;
   std::string file_;
   csv_parser parser_{};
   int line_{0};

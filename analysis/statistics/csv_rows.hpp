@@ -32,7 +32,8 @@ std::string table_text(std::istream& text, const std::string& file);
 // Comma-separated values (RFC 4180), or separated by tabulators or semicolons where the header has
 // any, or by spaces where it has nothing but quoted names, as R's write.table has it: cells in
 // double quotes may hold separators, quotes and line ends; spaces around other cells do not count;
-// empty lines and a byte order mark are skipped. Throws InvalidInput with file:line for a quote
+// empty lines and a byte order mark are skipped. Between tabulators a quote that does not begin a
+// cell is a character. Throws InvalidInput with file:line for a quote
 // that is out of place or left open, for what is no UTF-8 text, and for a file beyond 64 MB. An
 // apostrophe that guards a cell from being run as a formula is no part of it
 // (core/text/spreadsheet_cell.hpp).

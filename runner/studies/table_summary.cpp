@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "analysis/report/answer_tables/foreign_text.hpp"
 #include "core/error.hpp"
 #include "protocols/tasks/task.hpp"
+#include "runner/studies/counted.hpp"
 namespace tapstudy::runner {
 namespace {
 using analysis::NamedCsv;
@@ -40,12 +42,17 @@ void check_says_whose(const NamedCsv& table) {
   }
 }
 
-NamedCsv read_file(const std::string& file, const std::string& encoding) {
+using LeftOut = std::map<std::string, std::size_t>;  // lines of programs, and of how many files
+
+NamedCsv read_file(const std::string& file, const std::string& encoding, LeftOut& left_out) {
   std::ifstream text{file};
   if (!text) {
     throw core::InvalidInput{file + ": cannot be read"};
   }
   std::string bytes = analysis::utf8_of(analysis::table_text(text, file), encoding, file);
+  for (const std::string& line : analysis::without_lines_of_programs(bytes)) {
+    ++left_out[line];
+  }
   const bool is_json = analysis::is_json_list(bytes);
   analysis::check_is_no_json_object(bytes, file);
   std::istringstream whole{std::move(bytes)};
@@ -201,14 +208,19 @@ Summary summary_of_matrix(NamedCsv table, const TableOptions& options, const std
 
 Summary summary_of_tables(const std::vector<std::string>& files, const TableOptions& options) {
   std::vector<NamedCsv> tables;
+  LeftOut left_out;
   for (const std::string& file : files) {
-    tables.push_back(read_file(file, options.encoding));
+    tables.push_back(read_file(file, options.encoding, left_out));
   }
   check_differ(tables);
   const std::string title = std::filesystem::path{files.front()}.stem().string();
   Summary summary = hold_answers(tables, options)
                         ? summary_of_answers(tables, options, title)
                         : summary_of_matrix(tables.front(), options, title);
+  for (const auto& [line, count] : left_out) {
+    summary.deviations.push_back(
+        fmt::format("{} is left out of {}: it is no row", line, counted(count, "file")));
+  }
   summary.provenance = {{"counts", fmt::format("{}", fmt::join(files, ", "))}};
   return summary;
 }

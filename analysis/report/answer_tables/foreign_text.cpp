@@ -15,6 +15,7 @@
 #include <unordered_map>
 
 #include "core/error.hpp"
+#include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
 struct Free {
@@ -35,10 +36,19 @@ std::string likely_encoding(std::string_view bytes) {
   return bytes.find('\0') == std::string_view::npos ? "windows-1252" : "UTF-16LE";
 }
 
-std::string without_separator_line(std::string text) {
+std::size_t begin_of(const std::string& text) {
   constexpr std::string_view mark = "\xEF\xBB\xBF";
-  const std::size_t begin = text.starts_with(mark) ? mark.size() : 0;
-  const std::string line = text.substr(begin, text.find_first_of("\r\n", begin) - begin);
+  return text.starts_with(mark) ? mark.size() : 0;
+}
+
+std::string first_line(const std::string& text) {
+  const std::size_t begin = begin_of(text);
+  return text.substr(begin, text.find_first_of("\r\n", begin) - begin);
+}
+
+std::string without_separator_line(std::string text) {
+  const std::size_t begin = begin_of(text);
+  const std::string line = first_line(text);
   constexpr std::string_view key = "sep=";
   if (line.size() == key.size() + 1 && line.starts_with(key)) {
     text.erase(begin, line.size());  // its end stays, for the lines that are counted
@@ -73,6 +83,29 @@ std::string utf8_of(const std::string& bytes, const std::string& encoding,
                  : fmt::format("--encoding: '{}' is not known (iconv --list names all)", encoding)};
   }
   return without_separator_line({text.get(), size});
+}
+
+std::vector<std::string> without_lines_of_programs(std::string& text) {
+  std::vector<std::string> told;
+  const std::string line = first_line(text);
+  std::string name = core::lower_case(line);
+  name.erase(name.find_last_not_of(" \"0123456789") + 1);  // .edat2, .emrg3
+  if (name.find('\t') == std::string::npos &&
+      (name.ends_with(".edat") || name.ends_with(".emrg"))) {
+    text.erase(begin_of(text), line.size());  // its end stays, for the lines that are counted
+    told.emplace_back("the first line, in which E-Prime names its file,");
+  }
+  constexpr std::string_view fillers = "\r\n\t,; \"";
+  const std::size_t last = text.find_last_not_of(fillers);
+  const std::size_t end = last == std::string::npos ? last : text.find_last_of("\r\n", last);
+  if (end != std::string::npos) {
+    const std::size_t first = text.find_first_not_of(fillers, end);
+    if (text.substr(first, last + 1 - first) == "END OF FILE") {
+      text.erase(end + 1);
+      told.emplace_back("the last line, 'END OF FILE', which Gorilla adds,");
+    }
+  }
+  return told;
 }
 
 namespace {

@@ -11,6 +11,10 @@ namespace tapstudy::analysis {
 // that is not known.
 std::string utf8_of(const std::string& bytes, const std::string& encoding, const std::string& file);
 
+// Empties lines of a table that other programs add to it: the file's name above E-Prime's header,
+// and "END OF FILE" below Gorilla's rows. Says which, for people: "the first line, …,".
+std::vector<std::string> without_lines_of_programs(std::string& text);
+
 // The same for names that people read as one: whatever their case, the spaces in and around them
 // (no-break spaces included), how their letters are composed (Unicode, NFKC), marks that are not
 // seen and zeros before a number.

@@ -703,3 +703,47 @@ TEST_CASE("R's names of rows have no header, and a title is none", "[analysis][a
   CHECK_THROWS_WITH(settled("*** Header Start ***\nSubject: 1\n*** Header End ***\n"),
                     Contains("is E-Prime's own log") && Contains("E-DataAid"));
 }
+
+TEST_CASE("between tabs a quote that does not begin a cell is a character",
+          "[analysis][answer_tables]") {
+  const std::string header = "who\tinfo\tstimulus\tresponse\n";
+  const CsvText read = csv_of(header + "P1\t<?xml version=\"1.0\"?>\ta\ta\n" +
+                              "P1\t5\" thick\ta\tb\n" + "P1\t\"a\t\"\"b\"\"\"\tb\tb\n")
+                           .text;
+  REQUIRE(read.rows.size() == 4);
+  CHECK(read.rows[1].cells == std::vector<std::string>{"P1", "<?xml version=\"1.0\"?>", "a", "a"});
+  CHECK(read.rows[2].cells[1] == "5\" thick");
+  CHECK(read.rows[3].cells[1] == "a\t\"b\"");
+  CHECK(csv_of("size (5\" plates)\tstimulus\n1\ta\n").text.rows[1].cells.size() == 2);
+  for (const char* const row : {"P1\t\"a\"b\ta\ta\n", "P1\t\"a\ta\ta\n"}) {
+    CHECK_THROWS_WITH(csv_of(header + row), Contains("answers.csv:2: a quote is out of place"));
+  }
+  CHECK_THROWS_WITH(csv_of("stimulus,response\na,5\" thick\n"), Contains("out of place"));
+}
+
+TEST_CASE("lines that E-Prime and Gorilla add are told and left out, and every row keeps its line",
+          "[analysis][answer_tables]") {
+  const std::string rows = "Subject\tstimulus\tresponse\n1\ta\ta\n";
+  for (const char* const name : {"C:\\Data\\merge.emrg3", "\xEF\xBB\xBFtaps-1-1.edat2", "T.EMRG"}) {
+    std::string text = std::string{name} + "\r\n" + rows;
+    CHECK(without_lines_of_programs(text).size() == 1);
+    const NamedCsv read = csv_of(text);
+    CHECK(read.text.separator == '\t');
+    REQUIRE(read.text.rows.size() == 2);
+    CHECK(read.text.rows.front().line == 2);
+  }
+  for (const char* const end :
+       {"END OF FILE", "END OF FILE\r\n", "END OF FILE,,\n\n", "\"END OF FILE\""}) {
+    std::string text = std::string{"Subject,stimulus,response\n1,a,a\n"} + end;
+    CHECK(without_lines_of_programs(text) ==
+          std::vector<std::string>{"the last line, 'END OF FILE', which Gorilla adds,"});
+    CHECK(text == "Subject,stimulus,response\n1,a,a\n");
+  }
+  for (const std::string& other :
+       std::vector<std::string>{rows, "a.txt\n" + rows, rows + "1\ta\tEND OF FILE\n", "END OF FILE",
+                                "END OF FILE\n" + rows, "Subject\tx.edat\n1\ta\n", ""}) {
+    std::string text = other;
+    CHECK(without_lines_of_programs(text).empty());
+    CHECK(text == other);
+  }
+}

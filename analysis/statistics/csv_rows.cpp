@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "analysis/statistics/file_kinds.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 #include "core/text/spreadsheet_cell.hpp"
@@ -164,6 +165,9 @@ std::string table_text(std::istream& text, const std::string& file) {
   std::string bytes;
   std::array<char, 65'536> part{};
   while (text.read(part.data(), part.size()) || text.gcount() > 0) {
+    if (bytes.empty()) {
+      check_may_be_text({part.data(), static_cast<std::size_t>(text.gcount())}, file);
+    }
     bytes.append(part.data(), static_cast<std::size_t>(text.gcount()));
     if (bytes.size() > max_bytes) {
       throw core::InvalidInput{

@@ -26,7 +26,7 @@ struct CsvText {
 // A count from 0, also where it is written as "3.0"; unset for what is none.
 std::optional<std::int64_t> count_in_cell(const CsvText& table, const std::string& cell);
 
-// All of a table's file. Throws InvalidInput beyond 64 MB.
+// All of a table's file. Throws InvalidInput beyond 64 MB, and as check_may_be_text().
 std::string table_text(std::istream& text, const std::string& file);
 
 // Comma-separated values (RFC 4180), or separated by tabulators or semicolons where the header has

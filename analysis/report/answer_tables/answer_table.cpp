@@ -475,6 +475,31 @@ struct ReadRows {
   std::vector<Origin> origins;
   std::vector<OtherColumns> columns;  // of each file
 };
+// Where no row meets all conditions.
+std::string why_none_is_chosen(const std::vector<NamedCsv>& files,
+                               const std::vector<RowCondition>& conditions) {
+  std::vector<std::string> named;
+  for (const RowCondition& condition : conditions) {
+    named.push_back(fmt::format("--where '{}{}={}'", condition.column,
+                                condition.is_excluded ? "!" : "", condition.value));
+    const bool is_met = std::ranges::any_of(files, [&](const NamedCsv& csv) {
+      const std::vector<std::string>& header = csv.text.rows.front().cells;
+      const auto place = std::ranges::find(header, condition.column) - header.begin();
+      return std::ranges::any_of(std::span{csv.text.rows}.subspan(1), [&](const CsvRow& row) {
+        return (row.cells[static_cast<std::size_t>(place)] == condition.value) !=
+               condition.is_excluded;
+      });
+    });
+    if (!is_met) {
+      return ": no row meets " + named.back();
+    }
+  }
+  return fmt::format(
+      ": each condition is met by some rows, and {} by none (of several values of one column keep "
+      "those that are wanted by leaving the others out: COLUMN!=VALUE)",
+      fmt::join(named, " and "));
+}
+
 ReadRows read_rows(const std::vector<NamedCsv>& files, const AnswerReading& reading,
                    AnswerTable& table) {
   ReadRows read;
@@ -495,7 +520,10 @@ ReadRows read_rows(const std::vector<NamedCsv>& files, const AnswerReading& read
     read.columns.push_back(reader.other_columns());
   }
   if (table.answers.empty()) {
-    throw core::InvalidInput{fmt::format("{}: holds no answers", files.front().file)};
+    throw core::InvalidInput{fmt::format("{}: holds no answers{}", files.front().file,
+                                         table.rows == 0 && !reading.conditions.empty()
+                                             ? why_none_is_chosen(files, reading.conditions)
+                                             : "")};
   }
   keep_one_mode(table, read.origins);
   check_is_one_block(table.answers, read.origins);

@@ -747,3 +747,41 @@ TEST_CASE("lines that E-Prime and Gorilla add are told and left out, and every r
     CHECK(text == other);
   }
 }
+
+TEST_CASE("a file that is no text is told by its first bytes, with what makes a table of it",
+          "[analysis][answer_tables]") {
+  using namespace std::string_literals;
+  struct File {
+    std::string bytes;
+    const char* told;
+  };
+  const auto [bytes, told] = GENERATE(values<File>(
+      {{"PK\3\4\0\0xl/workbook.xml"s, "is an Excel workbook, not a table of text: save it as CSV"},
+       {"PK\3\4\0\0mimetypeapplication/vnd.oasis.opendocument.spreadsheet"s, "of LibreOffice"},
+       {"PK\3\4\0\0S01.csv"s, "is a zip archive, not a table of text: unpack it"},
+       {"\x1f\x8b\x08\0"s, "gunzip"},
+       {"$FL2@(#) SPSS DATA FILE\0"s, "of SPSS"},
+       {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"s, "an old Office program"},
+       {"RDX3\nX\n\0\0"s, "a file that R saved"},
+       {"X\n\0\0\0\3"s, "write.csv() in R"},
+       {"PAR1\x15\4"s, "a Parquet file"},
+       {"SQLite format 3\0"s, "by its directory"}}));
+  std::istringstream text{bytes + std::string(200, 'x')};
+  CHECK_THROWS_WITH(table_text(text, "x.bin"), Contains("x.bin: is ") && Contains(told));
+  std::istringstream rows{"PAR1,stimulus,response\n1,a,a\n"};
+  CHECK(table_text(rows, "x.csv").size() == 29);
+}
+
+TEST_CASE("conditions that no row meets are told, alone or together", "[analysis][answer_tables]") {
+  const std::string text = "who,stimulus,response\n1,a,a\n2,b,b\n";
+  AnswerReading reading;
+  reading.conditions = {{"who", "1"}, {"who", "2"}};
+  CHECK_THAT(refusal(text, reading),
+             Contains("answers.csv: holds no answers: each condition is met by some rows, and "
+                      "--where 'who=1' and --where 'who=2' by none"));
+  reading.conditions = {{"who", "1"}, {"stimulus", "c"}, {"who", "2", true}};
+  CHECK_THAT(refusal(text, reading),
+             Contains("holds no answers: no row meets --where 'stimulus=c'") && !Contains("who"));
+  reading.conditions = {{"who", "1", true}, {"who", "2", true}};
+  CHECK_THAT(refusal(text, reading), Contains("--where 'who!=1' and --where 'who!=2' by none"));
+}

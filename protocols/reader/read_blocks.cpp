@@ -10,32 +10,13 @@
 #include "protocols/schedule/ordering.hpp"
 #include "protocols/schedule/schedule.hpp"
 namespace tapstudy::protocols {
-namespace {
-// Blanks collapsed, as a page does, and Latin capitals small.
-std::string as_it_reads(const std::string& label) {
-  std::string read;
-  for (const char letter : label) {
-    if (letter != ' ') {
-      read += letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-    } else if (!read.empty() && read.back() != ' ') {
-      read += letter;
-    }
-  }
-  return read.ends_with(' ') ? read.substr(0, read.size() - 1) : read;
-}
-}  // namespace
-
 std::optional<std::string> why_not_told_apart(const std::vector<Option>& options) {
   std::map<std::string, std::string> name_of_label;
   for (const Option& option : options) {
-    const std::string read = as_it_reads(option.label);
-    const auto [known, is_new] = name_of_label.emplace(read, option.name);
+    const auto [known, is_new] = name_of_label.emplace(as_it_reads(option.label), option.name);
     if (!is_new) {
       return fmt::format("the answers '{}' and '{}' have the same label, '{}'", known->second,
                          option.name, option.label);
-    }
-    if (read.empty()) {
-      return fmt::format("the answer '{}' has a label of blanks", option.name);
     }
   }
   return std::nullopt;

@@ -5,7 +5,7 @@
 namespace tapstudy::protocols {
 namespace {
 constexpr double no_end = 1e30;
-constexpr const char* printable_line = "^[^\\u0000-\\u001f\\u007f]+$";
+constexpr const char* printable_line = "^(?=.*\\S)[^\\u0000-\\u001f\\u007f]+$";
 constexpr const char* free_name = "^(?!NA$)[A-Za-z0-9_][A-Za-z0-9_.+-]{0,63}$";
 constexpr int few = 3;
 }  // namespace

@@ -13,6 +13,9 @@ std::string printable(const std::string& text);
 std::string kind_of(const YAML::Node& node);
 
 inline constexpr const char* key_is_missing = "is missing";
+inline constexpr const char* merges_are_not_read =
+    "merges of mappings (<<) are not read: the keys are written out, or `*name` stands for a whole "
+    "value";
 
 // Collects all problems of one file, so that they are reported together; and every key that was
 // looked up, so that the schema can be checked against the reader.

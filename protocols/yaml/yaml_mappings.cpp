@@ -307,9 +307,7 @@ void MapReader::check_count(const std::string& key, const std::vector<std::strin
 
 void MapReader::reject_unknown(const YAML::Node& node, const std::string& key) {
   if (key == "<<") {
-    reject_at(node, path_of(key),
-              "merges of mappings are not read: the keys are written out, or `*name` stands for a "
-              "whole value");
+    reject_at(node, path_of(key), merges_are_not_read);
     for (const std::string& merged : known_) {
       problems_->withdraw_missing(path_of(merged));
     }

@@ -17,6 +17,7 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/text/plain_text.hpp"
 #include "protocols/yaml/described_values.hpp"
 #include "protocols/yaml/problems.hpp"
 namespace tapstudy::protocols {
@@ -77,6 +78,22 @@ bool is_name(const std::string& text) {
   const bool means_missing = text == "NA";  // in tables
   return !means_missing && !text.empty() && text.size() <= 64 &&
          std::ranges::all_of(text, is_inner) && text.find_first_of("-+.") != 0;
+}
+
+std::string as_it_reads(const std::string& text) {
+  constexpr std::u32string_view blanks = U" \t\n\r\u00a0\u2002\u2003\u2009\u202f\u3000";
+  constexpr std::u32string_view unseen = U"\u00ad\u200b\u200c\u200d\u2060\ufeff";
+  std::string read;
+  for (auto next = text.begin(); next != text.end();) {
+    const auto start = next;
+    const char32_t character = utf8::unchecked::next(next);
+    if (blanks.find(character) != std::u32string_view::npos) {
+      read += read.empty() || read.back() == ' ' ? "" : " ";
+    } else if (unseen.find(character) == std::u32string_view::npos) {
+      read += core::lower_case(std::string{start, next});
+    }
+  }
+  return read.ends_with(' ') ? read.substr(0, read.size() - 1) : read;
 }
 
 bool Range::contains(double x) const {
@@ -237,12 +254,11 @@ std::string hint_for_number(const YAML::Node& node) {
   if (rest.front() == ',') {
     return " (decimals take a point, and nothing separates thousands)";
   }
-  const std::string number_text = text.substr(0, text.size() - rest.size());
   const auto unit =
       static_cast<unsigned char>(rest[std::min(rest.find_first_not_of(' '), rest.size() - 1)]);
   // 0b10 is a number in other languages, and nothing has a unit
   const bool is_unit = (std::isalpha(unit) != 0 || unit == '%' || unit >= 0x80) && number != 0.0;
-  return is_unit ? fmt::format(" (the key states the unit: write {})", number_text) : "";
+  return is_unit ? " (the number stands alone, in the unit that the key states)" : "";
 }
 }  // namespace
 
@@ -310,7 +326,8 @@ int MapReader::integer(const Key& key, int low, int high, std::optional<int> oth
   const auto value = node->IsScalar() ? whole_number_in(node->Scalar()) : std::nullopt;
   if (!value) {
     reject_at(*node, path_of(key.name),
-              fmt::format("{} is not a whole number{}", kind_of(*node), hint_for_number(*node)));
+              fmt::format("{} is not a whole number{} (from {} to {})", kind_of(*node),
+                          hint_for_number(*node), low, high));
     return low;
   }
   if (*value < low || *value > high) {
@@ -345,6 +362,10 @@ bool MapReader::yes_or_no(const Key& key, std::optional<bool> otherwise) {
 bool MapReader::check_name(const YAML::Node& node, const std::string& path) {
   if (node.IsScalar() && is_name(node.Scalar())) {
     return true;
+  }
+  if (node.IsScalar() && node.Scalar() == "<<") {
+    reject_at(node, path, merges_are_not_read);
+    return false;
   }
   reject_at(node, path,
             fmt::format("{} is not a name (1 to 64 letters, digits, '_', '-', '+' or '.', starting "

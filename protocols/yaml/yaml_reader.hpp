@@ -40,6 +40,9 @@ std::vector<std::string> texts_without(const std::string& language,
 // All languages that a text is given in.
 std::set<std::string> languages_of(const Translations& translations);
 bool is_language(const std::string& text);
+// The same for texts that people read as one: blanks collapsed, as a page does, what is not seen
+// left out, and Latin capitals small. The text is UTF-8.
+std::string as_it_reads(const std::string& text);
 enum class TextLines { one, several };
 enum class TextLanguages { one, several };
 }  // namespace tapstudy::protocols

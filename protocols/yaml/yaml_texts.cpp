@@ -49,6 +49,9 @@ std::string MapReader::text_at(const YAML::Node& node, const std::string& path, 
                           lines == TextLines::one ? "one line of text" : "text"));
     return "";
   }
+  if (lines == TextLines::one && as_it_reads(node.Scalar()).empty()) {
+    reject_at(node, path, fmt::format("{} holds nothing but blanks", kind_of(node)));
+  }
   return node.Scalar();
 }
 

@@ -44,7 +44,7 @@ void write_text(std::ostream& out, const Summary& summary, std::size_t most_line
     block->write_text(out, most_lines);
   }
   for (const ReportSection& section : summary.sections) {
-    if (summary.blocks.empty() || !section.is_detail) {
+    if (summary.blocks.empty() || !section.is_detail || most_lines == all_lines) {
       write_sections_text(out, {&section, 1}, most_lines);
     }
   }

@@ -385,6 +385,18 @@ void read_blocks(MapReader& top, const ReadFile& read_file, Protocol& protocol) 
   }
 }
 
+namespace {
+// Blocks exchange their places within a session.
+bool can_exchange(const std::vector<std::string>& blocks, const Protocol& protocol) {
+  std::map<std::string, int> of_session;
+  for (const std::string& name : blocks) {
+    const Block* const block = protocol.find_block(name);
+    ++of_session[block == nullptr ? "" : block->session];
+  }
+  return std::ranges::any_of(of_session, [](const auto& session) { return session.second >= 2; });
+}
+}  // namespace
+
 void read_block_order(MapReader& top, Protocol& protocol) {
   std::vector<std::string> movable;
   for (const Block& block : protocol.blocks) {
@@ -409,6 +421,11 @@ void read_block_order(MapReader& top, Protocol& protocol) {
                          movable, movable);
         reader.check("blocks", chosen.blocks.size() >= 2, R"({"minItems": 2})",
                      "are not two blocks or more, without practice and fixed ones");
+        if (chosen.blocks.size() >= 2 && !can_exchange(chosen.blocks, protocol)) {
+          reader.reject(
+              "no two of its blocks are of one session, within which they would exchange "
+              "their places");
+        }
       });
 }
 }  // namespace tapstudy::protocols

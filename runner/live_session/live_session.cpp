@@ -232,8 +232,19 @@ void add_note(const BegunSession& session, results::Store& store) {
   }
 }
 
-// Orders are balanced where each is used once.
-void tell_who_has_order(const results::SessionRow& session, results::Store& store) {
+bool has_balanced_orders(const protocols::Protocol& protocol) {
+  const auto is_balanced = [](const auto& of) { return of.order == protocols::Order::williams; };
+  return !protocol.groups.empty() || is_balanced(protocol.block_order) ||
+         std::ranges::any_of(protocol.blocks, is_balanced);
+}
+
+// Orders are balanced where each is used once, which --row can change, and who goes on after others
+// began.
+void tell_who_has_order(const results::SessionRow& session, const protocols::Protocol& protocol,
+                        results::Store& store) {
+  if (!has_balanced_orders(protocol)) {
+    return;
+  }
   const std::map<std::string, std::string> excluded = store.excluded_participants();
   for (const results::SessionRow& other : store.sessions()) {
     if (other.participant_id != session.participant_id && other.mode == session.mode &&
@@ -289,9 +300,7 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
       resume(*earlier, protocol, store, session);
     }
     take_up_session(request, protocol, earlier, store, session);
-    if (request.order_index) {
-      tell_who_has_order(session.row, store);
-    }
+    tell_who_has_order(session.row, protocol, store);
     store.add_session(session.row);
   });
   add_note(session, store);

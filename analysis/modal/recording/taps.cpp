@@ -90,9 +90,12 @@ class TapFinder {
   std::size_t begin_of_decay(const Impact& impact, std::size_t last) {
     const std::size_t onset = impact.last_blow;
     if (onset != impact.onset) {
-      remark(impact.onset, "struck again within 30 ms, its decay is taken from there on",
-             fmt::format("{:.4f} s later",
-                         static_cast<double>(onset - impact.onset) / recording_.rate_hz));
+      remark(
+          impact.onset,
+          "struck again within 30 ms: its decay is taken from there on, and no decaying sinusoid "
+          "is fitted to it",
+          fmt::format("{:.4f} s later",
+                      static_cast<double>(onset - impact.onset) / recording_.rate_hz));
     }
     const auto magnitude = [&](std::size_t i) { return std::abs(centred_[i]); };
     std::size_t peak = onset;
@@ -122,8 +125,8 @@ class TapFinder {
     const std::size_t last = next > onset + guard ? next - guard : onset;
     const std::size_t begin = begin_of_decay(impact, last);
     const std::size_t longest = begin + samples_in(finding_.max_s, recording_.rate_hz);
-    const std::size_t end =
-        begin < last ? std::min(longest, end_of_decay(energies_, begin, last)) : begin;
+    const std::size_t rings_until = begin < last ? end_of_decay(energies_, begin, last) : begin;
+    const std::size_t end = std::min(longest, rings_until);
     const double decay_s = static_cast<double>(end - begin) / recording_.rate_hz;
     if (end - begin < min_decay || decay_s < min_decay_s) {
       remark(onset,
@@ -135,8 +138,12 @@ class TapFinder {
     }
     if (end == last && is_followed) {
       remark(onset, "cut at the next one", fmt::format("after {:.3f} s", decay_s));
+    } else if (end < rings_until) {
+      remark(onset, fmt::format("cut after {:g} s, while it rings (--longest)", finding_.max_s),
+             fmt::format("until {:.3g} s",
+                         static_cast<double>(rings_until - begin) / recording_.rate_hz));
     }
-    found_.taps.push_back({impact_, onset, begin, end});
+    found_.taps.push_back({impact_, onset, begin, end, impact.last_blow != onset});
   }
 
   void refuse_sustained(const SustainedSound& sound) const {

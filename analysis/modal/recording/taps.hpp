@@ -7,6 +7,7 @@ struct Tap {
   std::size_t onset{};
   std::size_t begin{};
   std::size_t end{};
+  bool is_struck_again{};  // within 30 ms: `begin` is after the last blow
 };
 
 struct TapFinding {

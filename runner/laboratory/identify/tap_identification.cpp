@@ -233,7 +233,8 @@ class Identifier {
       throw core::InvalidInput{fmt::format("{}", fmt::join(result_.remarks, "\n"))};
     }
     for (IdentifiedTap& tap : result_.taps) {
-      if (!tap.is_clipped) {  // it is fitted from the impact on, where they are
+      // it is fitted from the impact on, where samples at the limit and further blows are
+      if (!tap.is_clipped && !tap.tap.is_struck_again) {
         tap.sinusoid = analysis::fit_decaying_sinusoid(
             tap.whole, band_of_sinusoid(result_.band, tap.whole.rate_hz));
       }
@@ -320,10 +321,11 @@ class Identifier {
     result_.sinusoid = sinusoid_law(
         result_, protocol_ ? std::optional{protocol_->rendering.finger} : std::nullopt);
     if (!result_.sinusoid) {
-      result_.remarks.push_back(fmt::format(
-          "no tap that is not clipped is mostly one decaying sinusoid (it would have to "
-          "explain {:.0f} % of its energy)",
-          100.0 * min_explained_by_sinusoid));
+      result_.remarks.push_back(
+          fmt::format("no tap that was struck once and is not clipped is mostly one decaying "
+                      "sinusoid (it would "
+                      "have to explain {:.0f} % of its energy)",
+                      100.0 * min_explained_by_sinusoid));
     }
     if (protocol_) {
       result_.model = compared_with_model();

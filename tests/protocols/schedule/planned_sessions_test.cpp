@@ -50,6 +50,17 @@ TEST_CASE("a block of several sessions is one of each, called after both", "[pro
   CHECK(grouped.groups[1].blocks == Names{"hard.day_1", "soft.day_1", "soft.day_2"});
 }
 
+TEST_CASE("an order of blocks of which no two are of one session is refused", "[protocols][days]") {
+  const std::string two_days =
+      "sessions:\n  - {name: day_1, blocks: [hard]}\n  - {name: day_2, blocks: [soft, long]}\n";
+  CHECK_THROWS_WITH(
+      testing::with_blocks({"hard", "soft", "long"},
+                           "block_order: {order: williams, blocks: [hard, soft]}\n" + two_days),
+      Contains("no two of its blocks are of one session"));
+  CHECK_NOTHROW(testing::with_blocks({"hard", "soft", "long"},
+                                     "block_order: {order: williams}\n" + two_days));
+}
+
 // Blocks exchange their places within a session only, and there in the rows of a Williams design.
 TEST_CASE("sessions follow one another in every order, and each is balanced by itself",
           "[protocols][days]") {

@@ -167,6 +167,16 @@ TEST_CASE("a second blow is found while the first still rings", "[analysis][reco
   CHECK(find_taps(recording, {}).impacts == 4);
 }
 
+TEST_CASE("a decay that is cut while it rings is told, and one that is not is not",
+          "[analysis][recordings]") {
+  const Recording recording =
+      testing::planted_recording({{{50.0, 0.002}}}, {0.3}, 2000.0, 8.0, 1e-4, 3);
+  const FoundTaps cut = find_taps(recording, {});
+  REQUIRE(cut.remarks.size() == 1);
+  CHECK_THAT(cut.remarks.front().kind, Contains("cut after 2 s, while it rings (--longest)"));
+  CHECK(find_taps(recording, {.max_s = 20.0}).remarks.empty());
+}
+
 TEST_CASE("what strikes twice within 30 ms is one impact, whose decay begins after the last blow",
           "[analysis][recordings]") {
   const double rate_hz = 8192.0;

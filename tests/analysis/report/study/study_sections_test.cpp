@@ -301,7 +301,8 @@ TEST_CASE("quartiles of an item are numpy's, and every answer is counted once",
     }
     std::string numbers;
     for (const GivenAnswer& answer : answers) {
-      const bool is_of_row = answer.asked == row.at("asked") && answer.item == row.at("item");
+      const bool is_of_row = answer.asked == row.at("asked").get<std::string>() &&
+                             answer.item == row.at("item").get<std::string>();
       numbers += is_of_row && answer.answer ? *answer.answer + "," : "";
     }
     const auto expected =

@@ -104,6 +104,41 @@ TEST_CASE("the decaying sinusoid is fitted to taps that are not clipped, and to 
   CHECK(all.agreed.size() == 1);
 }
 
+// The oracle is what was planted: over both blows a decay is another one.
+TEST_CASE("no decaying sinusoid is fitted to taps that were struck twice", "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.csv";
+  const double rate_hz = 8192.0;
+  const analysis::Pole planted{200.0, 0.01};
+  const auto identified_of = [&](const std::vector<double>& blows_s) {
+    const analysis::Recording live =
+        testing::planted_recording({{planted}}, blows_s, rate_hz, 3.0, 0.001, 5);
+    std::vector<double> force(live.samples.size(), 0.0);
+    for (const double blow_s : blows_s) {
+      const auto first = static_cast<std::size_t>(std::lround(blow_s * rate_hz));
+      std::fill_n(force.begin() + static_cast<std::ptrdiff_t>(first), 8, 10.0);
+    }
+    std::string text = "live,force\n";
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      text += fmt::format("{:.7g},{:.7g}\n", live.samples[i], force[i]);
+    }
+    testing::write(file, text);
+    runner::TapQuestion question;
+    question.recordings = {file};
+    question.columns = {"live"};
+    question.reading.rate_hz = rate_hz;
+    question.force_column = "force";
+    runner::Progress progress{"identifying"};
+    return runner::identify_taps(question, progress);
+  };
+  CHECK_FALSE(identified_of({0.4, 0.414, 1.7, 1.714}).sinusoid);
+  const runner::TapIdentification once = identified_of({0.4, 0.414, 1.7});
+  REQUIRE(once.sinusoid);
+  CHECK(
+      once.sinusoid->decay_per_s.value ==
+      Approx(planted.damping_ratio * 2.0 * std::numbers::pi * planted.frequency_hz).epsilon(0.01));
+}
+
 // A wide band is looked at part by part. The oracle is what was planted, almost without noise.
 TEST_CASE("a mode's damping does not depend on modes in other parts of the band",
           "[runner][identify]") {

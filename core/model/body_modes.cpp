@@ -1,6 +1,7 @@
 #include "core/model/body_modes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "core/model/element_order.hpp"
 #include "core/model/elements/enrichment.hpp"
 #include "core/model/error_estimate.hpp"
+#include "core/model/fixation.hpp"
 #include "core/model/joints/coupled_bodies.hpp"
 #include "core/model/joints/joints.hpp"
 #include "core/model/modes/modal_solver.hpp"
@@ -125,6 +127,8 @@ SolvedBody solve_once(const BodySpec& body, ErrorEstimation estimation,
   } else {
     solved.modes.estimate = estimate_if_wanted(estimation, body, unit, only, modes, progress);
   }
+  solved.modes.estimate.held_in_part =
+      fmt::format("{}", fmt::join(held_in_part(only.mesh, body.shape, body.fixations), "; "));
   solved.displacement = only.displacement * modes.shapes;
   solved.mesh = std::move(only.mesh);
   return solved;

@@ -17,6 +17,8 @@ struct ErrorEstimate {
   Eigen::ArrayXd kappa_rad_per_m;  // of the modes and a few beyond the band, ascending
   std::string not_estimated;       // why kappa_rad_per_m is empty; empty: estimated
   double seconds{};                // that this took
+  // What the drop does not tell: fixations that the mesh holds in part (held_in_part).
+  std::string held_in_part{};
 };
 
 // As `not_estimated`, where nobody wanted it.

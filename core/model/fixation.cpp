@@ -295,6 +295,49 @@ std::vector<double> held_areas_m2(const TetMesh& mesh, const Shape& shape,
   return areas_m2;
 }
 
+namespace {
+// Of triangles between neighbouring nodes, mid-side nodes included.
+double spanned_area_m2(const TetMesh& mesh, const std::vector<bool>& is_held) {
+  if (mesh.order() == 1) {
+    return held_area_m2(mesh, is_held);
+  }
+  constexpr std::array<std::array<int, 3>, 4> quarters{
+      {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+  double area_m2 = 0.0;
+  for (Eigen::Index i = 0; i < mesh.surface.rows(); ++i) {
+    const auto held = std::ranges::count_if(quarters, [&](const std::array<int, 3>& quarter) {
+      return std::ranges::all_of(quarter, [&](int node) {
+        return is_held[static_cast<std::size_t>(mesh.surface(i, node))];
+      });
+    });
+    area_m2 += 0.25 * static_cast<double>(held) * triangle_area_m2(mesh, i);
+  }
+  return area_m2;
+}
+}  // namespace
+
+std::vector<std::string> held_in_part(const TetMesh& mesh, const Shape& shape,
+                                      const std::vector<Fixation>& fixations) {
+  constexpr double nearly_all = 0.75;
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < fixations.size(); ++i) {
+    const Fixation& fixation = fixations[i];
+    if (fixation.shape == RegionShape::side || fixation.springs_n_per_m) {
+      continue;
+    }
+    const SurfaceRegion region = region_of(fixation, mesh, shape);
+    const double whole_m2 = area_within_m2(mesh, region);
+    const double held_m2 = spanned_area_m2(mesh, mesh.marked(region.nodes));
+    if (held_m2 < nearly_all * whole_m2) {
+      sentences.push_back(
+          fmt::format("fixation {}, the {}, holds {} nodes, which span {:.2g} of the {:.2g} m2 of "
+                      "the surface in it",
+                      i + 1, described(fixation), region.nodes.size(), held_m2, whole_m2));
+    }
+  }
+  return sentences;
+}
+
 std::vector<SpringSupport> spring_supports(const TetMesh& mesh, const Shape& shape,
                                            const std::vector<Fixation>& fixations) {
   std::vector<SpringSupport> supports;

@@ -85,6 +85,11 @@ bool can_hold_a_solid(const Fixation& fixation);
 std::vector<double> held_areas_m2(const TetMesh& mesh, const Shape& shape,
                                   const std::vector<Fixation>& fixations);
 
+// A sentence for each rigid fixation whose nodes span clearly less than what it takes up of the
+// surface: its frequencies are those of a smaller one. None for points, lines and sides.
+std::vector<std::string> held_in_part(const TetMesh& mesh, const Shape& shape,
+                                      const std::vector<Fixation>& fixations);
+
 // Equal text for equal fixations.
 std::string content_key(const Fixation& fixation);
 }  // namespace tapstudy::core

@@ -32,6 +32,10 @@ class Writer {
     bytes_.append(as_bytes(matrix.data()),
                   sizeof(*matrix.data()) * static_cast<std::size_t>(matrix.size()));
   }
+  void put_text(const std::string& text) {
+    put_all(Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>{
+        text.data(), static_cast<Eigen::Index>(text.size())});
+  }
   std::string take() { return std::move(bytes_); }
 
  private:
@@ -64,6 +68,11 @@ class Reader {
     }
     matrix.resize(rows, columns);
     copy(matrix.data(), sizeof(*matrix.data()) * static_cast<std::size_t>(matrix.size()));
+  }
+  void get_text(std::string& text) {
+    Eigen::Matrix<char, Eigen::Dynamic, 1> characters;
+    get_all(characters);
+    text.assign(characters.begin(), characters.end());
   }
   bool is_good_and_done() const { return is_good_ && bytes_.empty(); }
   bool is_good() const { return is_good_; }
@@ -120,9 +129,8 @@ std::string encoded(const BodyModes& modes) {
     writer.put(round.moved);
   }
   writer.put_all(Eigen::VectorXd{modes.estimate.kappa_rad_per_m.matrix()});
-  const std::string& reason = modes.estimate.not_estimated;
-  writer.put_all(Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>{
-      reason.data(), static_cast<Eigen::Index>(reason.size())});
+  writer.put_text(modes.estimate.not_estimated);
+  writer.put_text(modes.estimate.held_in_part);
   writer.put(modes.estimate.seconds);
   return writer.take();
 }
@@ -160,10 +168,9 @@ std::optional<BodyModes> decoded(const std::string& bytes) {
   Eigen::VectorXd larger;
   reader.get_all(larger);
   modes.estimate.kappa_rad_per_m = larger;
-  Eigen::Matrix<char, Eigen::Dynamic, 1> reason;
-  reader.get_all(reason);
+  reader.get_text(modes.estimate.not_estimated);
+  reader.get_text(modes.estimate.held_in_part);
   reader.get(modes.estimate.seconds);
-  modes.estimate.not_estimated.assign(reason.begin(), reason.end());
   return reader.is_good_and_done() ? std::optional{modes} : std::nullopt;
 }
 

@@ -97,6 +97,7 @@ ModalModel model_of(const BodyModes& body, const Material& material, double band
 
 FrequencyErrors frequency_errors(const BodyModes& body, const Material& material,
                                  double band_limit_hz) {
+  constexpr double little = 1e-4;
   const double unit = kappa_rad_per_m(1.0, material);
   const auto below = [&](const Eigen::ArrayXd& kappa) {
     return (kappa / unit < band_limit_hz).count();
@@ -105,9 +106,12 @@ FrequencyErrors frequency_errors(const BodyModes& body, const Material& material
   const Eigen::ArrayXd& larger = body.estimate.kappa_rad_per_m;
   FrequencyErrors errors;
   errors.not_estimated = body.estimate.not_estimated;
+  errors.held_in_part = body.estimate.held_in_part;
   errors.modes_at_least = static_cast<int>(modes);
   if (errors.not_estimated.empty() && larger.size() >= modes) {
-    errors.relative = (body.kappa_rad_per_m.head(modes) / larger.head(modes) - 1.0).max(0.0);
+    const Eigen::ArrayXd above = body.kappa_rad_per_m.head(modes) / larger.head(modes) - 1.0;
+    errors.relative = above.abs();
+    errors.is_either_way = (above < -little).any();
     errors.modes_at_least = static_cast<int>(std::max(modes, below(larger)));
   }
   return errors;

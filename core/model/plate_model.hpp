@@ -18,9 +18,11 @@ ModalModel model_of(const BodyModes& body, const PlateSpec& plate);
 
 // The estimated discretisation error of a body's frequencies in a material.
 struct FrequencyErrors {
-  Eigen::ArrayXd relative;    // of each mode in the band: f / f' - 1, f' of the next element order
-  int modes_at_least{};       // in the band, by the next element order
-  std::string not_estimated;  // why `relative` is empty
+  Eigen::ArrayXd relative;  // of each mode in the band: |f / f' - 1|, f' of the next element order
+  int modes_at_least{};     // in the band, by the next element order
+  std::string not_estimated;   // why `relative` is empty
+  bool is_either_way{};        // or some may be too low: shells of the next order hold other nodes
+  std::string held_in_part{};  // as ErrorEstimate
   double largest() const { return relative.size() > 0 ? relative.maxCoeff() : 0.0; }
 };
 FrequencyErrors frequency_errors(const BodyModes& body, const Material& material,

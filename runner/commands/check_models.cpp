@@ -348,20 +348,29 @@ std::string describe_errors(const core::FrequencyErrors& errors) {
                         counted(static_cast<std::size_t>(errors.modes_at_least), "mode"))
           : "";
   return fmt::format(
-      "estimated error: frequencies are too high by up to {}, by elements of the next "
-      "order{}",
+      "estimated error: frequencies are {} by up to {}, by elements of the next order{}",
+      errors.is_either_way ? "too high or too low" : "too high",
       core::describe_error(errors.largest()), missing);
 }
 
 std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors) {
   const bool is_missing = errors.modes_at_least > errors.relative.size();
-  if (errors.not_estimated.empty() && errors.largest() <= tolerated_error && !is_missing) {
-    return {};
+  std::string lines;
+  if (!errors.held_in_part.empty()) {
+    lines = fmt::format(
+        "  warning: {}: {}: the frequencies are those of a smaller fixation, and the estimated "
+        "error does not say by how much they differ (smaller elements, or a larger region)\n",
+        stimulus, errors.held_in_part);
   }
-  return fmt::format(
-      "  warning: {}: {} (mesh: order 2, of thin walls 3, a smaller max_tet_volume_m3 or less "
-      "flattening, of shell elements a smaller shell_width_m; accuracy: 0.02 refines until they "
-      "hold still)\n",
-      stimulus, describe_errors(errors));
+  if (errors.not_estimated.empty() && errors.largest() <= tolerated_error && !is_missing) {
+    return lines;
+  }
+  return lines + fmt::format(
+                     "  warning: {}: {} (mesh: order 2, of thin walls 3, a smaller "
+                     "max_tet_volume_m3 or less "
+                     "flattening, of shell elements a smaller shell_width_m; accuracy: 0.02 "
+                     "refines until they "
+                     "hold still)\n",
+                     stimulus, describe_errors(errors));
 }
 }  // namespace tapstudy::runner

@@ -46,6 +46,7 @@ std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
 std::string describe_elements(const core::ModelReport& report);
 // One line about the discretisation error of a model's frequencies.
 std::string describe_errors(const core::FrequencyErrors& errors);
-// Beyond 5 %, or where modes are missing, or nothing is known: a warning with its cure; else empty.
+// Beyond 5 %, or where modes are missing, or nothing is known, and where fixations are held in
+// part: warnings with their cures; else empty.
 std::string warning_of_errors(const std::string& stimulus, const core::FrequencyErrors& errors);
 }  // namespace tapstudy::runner

@@ -49,6 +49,9 @@ void add_errors(const core::FrequencyErrors& errors, nlohmann::ordered_json& jso
   } else {
     json["errors_not_estimated"] = errors.not_estimated;
   }
+  if (!errors.held_in_part.empty()) {
+    json["held_in_part"] = errors.held_in_part;
+  }
 }
 
 void add_surfaces(const protocols::Protocol& protocol, nlohmann::ordered_json& json) {

@@ -152,6 +152,7 @@ class RegionMoments {
       add(corners, triangle_area_m2(mesh, triangle), 0);
     }
   }
+  double area_m2() const { return area_m2_; }
   // nullopt where it holds no part of a triangle, such as a point.
   std::optional<LinearFields::Moments> means() const {
     return area_m2_ > 0.0 ? std::optional<LinearFields::Moments>{sum_m2_ / area_m2_} : std::nullopt;
@@ -205,6 +206,13 @@ class RegionMoments {
   double area_m2_{0.0};
 };
 
+}  // namespace
+
+double area_within_m2(const TetMesh& mesh, const SurfaceRegion& region) {
+  return RegionMoments{mesh, region, LinearFields{mesh, region.nodes}}.area_m2();
+}
+
+namespace {
 // Of these nodes, those that none of the triangles has.
 std::vector<Eigen::Index> alone(const TetMesh& mesh, const std::vector<Eigen::Index>& nodes,
                                 const std::vector<Eigen::Index>& triangles) {

@@ -17,6 +17,10 @@ struct SurfaceRegion {
 std::vector<Eigen::Index> triangles_between(const TetMesh& mesh,
                                             const std::vector<Eigen::Index>& nodes);
 
+// The area of what the region takes up of the surface: of a triangle that lies in it in part, of
+// that part. 0 for a point or a line.
+double area_within_m2(const TetMesh& mesh, const SurfaceRegion& region);
+
 struct NodeWeight {
   Eigen::Index node{};
   double weight{};

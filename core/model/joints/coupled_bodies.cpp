@@ -305,6 +305,20 @@ void set_energy_shares(const CoupledBodies& system, std::size_t springs, const M
 }
 }  // namespace
 
+namespace {
+std::string held_in_part_of_any(const BodySpec& body, const std::vector<DiscreteBody>& bodies) {
+  std::string all;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Plate& one = i == 0 ? body : static_cast<const Plate&>(body.joints->bodies[i - 1]);
+    for (const std::string& part : held_in_part(bodies[i].mesh, one.shape, one.fixations)) {
+      all += (all.empty() ? "" : "; ") + part;
+      all += i == 0 ? "" : fmt::format(" of body {}", i);
+    }
+  }
+  return all;
+}
+}  // namespace
+
 SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progress,
                                ErrorEstimation estimation) {
   CoupledBodies system = coupled(body, all_discretised(body, progress), *body.joints);
@@ -316,6 +330,7 @@ SolvedBody solve_joined_bodies(const BodySpec& body, const ProgressHook& progres
   set_energy_shares(system, body.joints->springs.size(), modes, solved.modes);
   solved.modes.report = report_on(system.bodies, modes);
   solved.modes.estimate = estimate_if_wanted(estimation, body, system, modes, progress);
+  solved.modes.estimate.held_in_part = held_in_part_of_any(body, system.bodies);
   DiscreteBody& tapped = system.bodies.front();
   solved.displacement = tapped.displacement * modes.shapes.topRows(tapped.matrices.K.rows());
   solved.mesh = std::move(tapped.mesh);

@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "core/geometry/smooth_normals.hpp"
+#include "core/geometry/triangle_tree.hpp"
 namespace tapstudy::core {
 namespace {
 using Ends = std::array<int, 2>;
@@ -252,10 +253,18 @@ namespace {
 // One round of division: a new point in the middle of each long edge.
 class Division {
  public:
-  Division(const MiddleSurface& surface, double longest_m)
-      : curved_{surface}, surface_{surface}, longest_m_{longest_m} {
+  Division(const MiddleSurface& surface, double longest_m, const std::vector<Ball>& balls)
+      : curved_{surface}, surface_{surface} {
     for (const auto& point : surface.facets.points_m.rowwise()) {
       points_m_.emplace_back(point);
+    }
+    const TriangleTree tree{surface.facets};
+    for (Eigen::Index triangle = 0; triangle < surface.facets.triangles.rows(); ++triangle) {
+      double allowed_m = longest_m;
+      for (const Ball& ball : balls) {
+        allowed_m = std::min(allowed_m, allowed_near_m(ball, triangle, tree));
+      }
+      mark_longer(triangle, allowed_m);
     }
   }
 
@@ -291,12 +300,33 @@ class Division {
  private:
   static constexpr int none = -1;
 
+  double allowed_near_m(const Ball& ball, Eigen::Index triangle, const TriangleTree& tree) const {
+    const auto shares = tree.barycentric(static_cast<int>(triangle), ball.at_m);
+    Vec3 nearest_m = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      nearest_m += shares.at(static_cast<std::size_t>(k)) * corner_m(triangle, k);
+    }
+    const double half_m = 0.5 * ball.radius_m;
+    return std::max(half_m, (nearest_m - ball.at_m).norm() - half_m);
+  }
+  Vec3 corner_m(Eigen::Index triangle, int k) const {
+    return points_m_[static_cast<std::size_t>(surface_.facets.triangles(triangle, k))];
+  }
+  void mark_longer(Eigen::Index triangle, double allowed_m) {
+    for (int k = 0; k < 3; ++k) {
+      const int from = surface_.facets.triangles(triangle, k);
+      const int to = surface_.facets.triangles(triangle, (k + 1) % 3);
+      if (distance_m(from, to) > allowed_m) {
+        too_long_.insert(ascending(from, to));
+      }
+    }
+  }
   // The middle of the edge from a triangle's corner k on.
   int middle_of(Eigen::Index triangle, int k) {
     constexpr std::array<std::array<double, 2>, 3> shares{{{0.5, 0.0}, {0.5, 0.5}, {0.0, 0.5}}};
     const int from = surface_.facets.triangles(triangle, k);
     const int to = surface_.facets.triangles(triangle, (k + 1) % 3);
-    if (distance_m(from, to) <= longest_m_) {
+    if (!too_long_.contains(ascending(from, to))) {
       return none;
     }
     const auto [middle, is_new] =
@@ -349,14 +379,15 @@ class Division {
 
   CurvedTriangles curved_;
   const MiddleSurface& surface_;
-  double longest_m_;
   std::vector<Vec3> points_m_;
+  std::set<Ends> too_long_;
   std::vector<std::array<int, 3>> triangles_;
   std::map<Ends, int> middles_;
 };
 }  // namespace
 
-MiddleSurface divided(MiddleSurface surface, double longest_m, Eigen::Index most) {
+MiddleSurface divided(MiddleSurface surface, double longest_m, const std::vector<Ball>& balls,
+                      Eigen::Index most) {
   for (;;) {
     if (surface.facets.triangles.rows() > most) {
       throw ModelError{fmt::format(
@@ -364,7 +395,7 @@ MiddleSurface divided(MiddleSurface surface, double longest_m, Eigen::Index most
           "larger shell_width_m, or a surface of fewer triangles)",
           longest_m, most)};
     }
-    std::optional<MiddleSurface> next = Division{surface, longest_m}.divided();
+    std::optional<MiddleSurface> next = Division{surface, longest_m, balls}.divided();
     if (!next) {
       return surface;
     }

@@ -54,7 +54,13 @@ class CurvedTriangles {
   std::vector<std::array<Vec3, 10>> controls_m_;
 };
 
-// Triangles divided until no edge is longer; the smooth surface stays, but for what cubic patches
-// approximate. Throws ModelError beyond `most` triangles.
-MiddleSurface divided(MiddleSurface surface, double longest_m, Eigen::Index most);
+struct Ball {
+  Vec3 at_m;
+  double radius_m{};
+};
+// Triangles divided until no edge is longer, nor longer than half of a ball's radius within it, and
+// little by little more around it, so that the nodes in the ball fill it; the smooth surface stays,
+// but for what cubic patches approximate. Throws ModelError beyond `most` triangles.
+MiddleSurface divided(MiddleSurface surface, double longest_m, const std::vector<Ball>& balls,
+                      Eigen::Index most);
 }  // namespace tapstudy::core

@@ -214,7 +214,13 @@ MiddleSurface middle_of(const Plate& plate, const std::vector<Fixation>& regions
   if (const auto* const box = std::get_if<Box>(&plate.shape)) {
     return {triangulated(*box, width_m, regions), {}};
   }
-  return divided(middle_surface(std::get<Solid>(plate.shape).sheet()->middle), width_m,
+  std::vector<Ball> balls;
+  for (const Fixation& region : regions) {
+    if (region.shape == RegionShape::ball) {
+      balls.push_back({region.at_m, region.radius_m});
+    }
+  }
+  return divided(middle_surface(std::get<Solid>(plate.shape).sheet()->middle), width_m, balls,
                  max_sheet_triangles);
 }
 

@@ -249,6 +249,16 @@ TEST_CASE("a weak spring to another body leaves the estimate as it is", "[core][
   CHECK(of_joined.tail(1)[0] == Approx(errors.tail(1)[0]).epsilon(0.1));
 }
 
+TEST_CASE("a frequency that the next order finds higher is off as one that it finds lower",
+          "[core][model]") {
+  BodyModes modes;
+  modes.kappa_rad_per_m = Eigen::Array2d{1.0, 2.0} * kappa_rad_per_m(1.0, mdf);
+  modes.estimate.kappa_rad_per_m = Eigen::Array2d{1.25, 1.9} * kappa_rad_per_m(1.0, mdf);
+  const FrequencyErrors errors = frequency_errors(modes, mdf, 10.0);
+  CHECK(errors.largest() == Approx(0.2));
+  CHECK(errors.is_either_way);
+}
+
 TEST_CASE("what is not estimated says why, and a stored model keeps its estimate",
           "[core][model][cache]") {
   const PlateSpec cube{
@@ -258,8 +268,9 @@ TEST_CASE("what is not estimated says why, and a stored model keeps its estimate
   const auto kept = decoded(encoded(modes));
   REQUIRE(kept);
   CHECK((kept->estimate.kappa_rad_per_m == modes.estimate.kappa_rad_per_m).all());
-  modes.estimate = {{}, "too large", 0.0};
+  modes.estimate = {{}, "too large", 0.0, "held by two nodes"};
   CHECK(decoded(encoded(modes))->estimate.not_estimated == "too large");
+  CHECK(decoded(encoded(modes))->estimate.held_in_part == "held by two nodes");
   CHECK(frequency_errors(modes, mdf, 1000.0).not_estimated == "too large");
   CHECK(frequency_errors(modes, mdf, 1000.0).relative.size() == 0);
 }

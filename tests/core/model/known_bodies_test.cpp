@@ -409,6 +409,23 @@ TEST_CASE("the area held by a side is that side's, by a disc nearly a circle's",
   CHECK(areas_m2.at(1) == Approx(M_PI * 0.02 * 0.02).epsilon(0.15));
 }
 
+TEST_CASE("a region of which a mesh holds but few nodes is told, of a finer mesh no more",
+          "[core][model]") {
+  const core::Shape shape = core::Solid{testing::box_surface({0.1, 0.06, 0.05}, 4)};
+  core::Fixation ball;
+  ball.shape = core::RegionShape::ball;
+  ball.at_m = {0.0, 0.0, core::bounds(shape).low_m.z()};
+  ball.radius_m = 0.01;
+  core::MeshSize size;
+  const auto told = [&] {
+    return core::held_in_part(core::to_quadratic(core::mesh_shape(shape, size)), shape, {ball});
+  };
+  REQUIRE(told().size() == 1);
+  CHECK_THAT(told().front(), Contains("fixation 1, the ball of radius 0.01 m"));
+  size.max_tet_volume_m3 = 3e-9;
+  CHECK(told().empty());
+}
+
 // The free cube by the Ritz method that Demarest 1971 (J. Acoust. Soc. Am. 49, 768) introduced for
 // it: displacements as products of Legendre polynomials, whose integrals have closed forms.
 namespace {

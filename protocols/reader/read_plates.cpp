@@ -206,8 +206,7 @@ Eigen::Isometry3d read_pose(MapReader& reader) {
 core::InvalidInput with_cure(const SurfaceFault& fault, const core::TriangleSurface& surface,
                              const std::string& file, double metres_per_unit) {
   return core::InvalidInput{
-      fmt::format("{}; try: {}; or in the study, beside the file: {}", fault.what(),
-                  command_that_cures(surface, file, metres_per_unit), key_that_cures(surface))};
+      fmt::format("{}; {}", fault.what(), cures(surface, file, metres_per_unit))};
 }
 
 // Of a surface that passes; else a fault with the command that should cure it.

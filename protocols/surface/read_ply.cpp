@@ -61,6 +61,11 @@ class Numbers {
     return encoding_ == Encoding::ascii ? next_word(place) : next_bytes(type, place);
   }
   std::size_t left() const { return body_.size(); }
+  // But for blanks, with which some programs end a file.
+  std::size_t left_at_end() const {
+    const auto last = body_.find_last_not_of(std::string_view{" \t\r\n\v\f\0", 7});
+    return last == std::string_view::npos ? 0 : last + 1;
+  }
 
  private:
   [[noreturn]] void ends(const std::string& place) const {
@@ -108,6 +113,10 @@ class PlyReader {
     Numbers numbers{file_, bytes_, encoding_};
     for (const Element& element : elements_) {
       read_element(element, numbers);
+    }
+    if (numbers.left_at_end() > 0) {
+      refuse(fmt::format("{} bytes are left after all that its header counts ({} points, {} faces)",
+                         numbers.left_at_end(), soup_.points.size(), faces_.size()));
     }
     check_corners();
     if (soup_.polygons.empty()) {

@@ -94,7 +94,7 @@ std::size_t triangles_by_header(std::string_view bytes) {
 SurfaceSoup read_binary(const std::string& file, std::string_view bytes) {
   const std::size_t count = triangles_by_header(bytes);
   const std::size_t present = (bytes.size() - before_triangles) / triangle_bytes;
-  if (count > present || count == 0) {
+  if (count != present || count == 0) {
     throw core::InvalidInput{fmt::format(
         "{}: is not a surface: a binary STL of {} triangles by its header, and with bytes for {}",
         file, count, present)};
@@ -129,7 +129,8 @@ SurfaceSoup read_stl(const std::string& file, std::string_view bytes) {
   }
   const std::string_view text = without_byte_order_mark(bytes);
   const std::string start = core::lower_case(text.substr(0, 1000));
-  if (start.find_first_not_of(" \t\r\n") != std::string::npos &&
+  const bool is_text = start.find('\0') == std::string::npos;
+  if (is_text && start.find_first_not_of(" \t\r\n") != std::string::npos &&
       start.substr(start.find_first_not_of(" \t\r\n")).starts_with("solid")) {
     return AsciiStl{file, text}.read();
   }

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "core/text/plain_text.hpp"
+#include "protocols/surface/check_surface.hpp"
+#include "protocols/surface/repair_surface.hpp"
 #include "protocols/surface/repaired_surface.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -15,34 +18,43 @@ constexpr Eigen::Index advised_triangles = 10'000;
 constexpr Eigen::Index most_triangles = 20'000;
 
 std::string command(const core::TriangleSurface& surface, const std::string& file,
-                    double metres_per_unit, Eigen::Index max_triangles) {
+                    double metres_per_unit, const std::string& filling,
+                    Eigen::Index max_triangles) {
   return fmt::format(
-      "tapstudy repair {} --metres-per-unit {} --wrap {:.2g} --largest-piece --max-triangles {} "
+      "tapstudy repair {} --metres-per-unit {} {}--wrap {:.2g} --largest-piece --max-triangles {} "
       "--out {}",
-      core::shell_word(file), metres_per_unit, advised_wrap_m(surface), max_triangles,
+      core::shell_word(file), metres_per_unit, filling, advised_wrap_m(surface), max_triangles,
       core::shell_word(std::filesystem::path{file}.stem().string() + "_repaired.ply"));
 }
 
-Eigen::Index triangles_left(const core::TriangleSurface& surface) {
-  return surface.triangles.rows() <= most_triangles ? most_triangles : advised_triangles;
+// Asks for holes to be filled up to this one; empty: they are, unasked.
+std::string filling(const RepairTerms& terms, const std::optional<double>& hole_m) {
+  return hole_m ? fmt::format("{}{}{:.3g}", terms.longest_hole, terms.before_number, 1.01 * *hole_m)
+                : std::string{};
 }
 }  // namespace
 
-std::string command_that_cures(const core::TriangleSurface& surface, const std::string& file,
-                               double metres_per_unit) {
-  return command(surface, file, metres_per_unit, triangles_left(surface));
-}
-
-std::string key_that_cures(const core::TriangleSurface& surface) {
-  return fmt::format("repair: {{{}{}{:.2g}, {}, {}: {}}}", key_terms.wrap, key_terms.before_number,
-                     advised_wrap_m(surface), key_terms.largest_piece, key_terms.max_triangles,
-                     triangles_left(surface));
+std::string cures(const core::TriangleSurface& surface, const std::string& file,
+                  double metres_per_unit) {
+  const Eigen::Index triangles =
+      surface.triangles.rows() <= most_triangles ? most_triangles : advised_triangles;
+  const auto hole_m =
+      surface.triangles.rows() <= max_triangles ? unfilled_hole_m(surface) : std::nullopt;
+  const std::string by_option = filling(option_terms, hole_m);
+  const std::string by_key = filling(key_terms, hole_m);
+  return fmt::format(
+      "try: {}{}; or in the study, beside the file: repair: {{{}{}{}{}{:.2g}, {}, {}: {}}}",
+      command(surface, file, metres_per_unit, by_option + (hole_m ? " " : ""), triangles),
+      hole_m ? fmt::format(" (of an open sheet without {}: a skin, or thickness_m)", by_option)
+             : std::string{},
+      by_key, hole_m ? ", " : "", key_terms.wrap, key_terms.before_number, advised_wrap_m(surface),
+      key_terms.largest_piece, key_terms.max_triangles, triangles);
 }
 
 std::string command_that_simplifies(const core::TriangleSurface& surface, const std::string& file,
                                     double metres_per_unit) {
   return command(
-      surface, file, metres_per_unit,
+      surface, file, metres_per_unit, "",
       std::clamp(surface.triangles.rows() / 2, Eigen::Index{fewest_triangles}, advised_triangles));
 }
 }  // namespace tapstudy::protocols

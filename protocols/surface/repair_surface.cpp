@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -191,6 +192,20 @@ void wrap(const TriangleSurface& surface, const RepairRequest& request, SurfaceR
   }
 }
 
+// Of a wrap of a surface whose longest hole stayed open.
+std::optional<EnteredHole> entered_hole(const TriangleSurface& surface,
+                                        const RepairRequest& request, double around_m,
+                                        const TriangleSurface& wrap) {
+  constexpr double clearly = 1.05;
+  const MendedSurface filled =
+      mended(surface, {std::numeric_limits<double>::max(), request.is_largest_piece_only,
+                       request.wrap_m.value_or(0.0)});
+  const double filled_m3 = core::volume_m3(filled.surface);
+  const bool is_less = core::volume_m3(wrap) * clearly < filled_m3;
+  return filled.holes.left == 0 && is_less ? std::optional{EnteredHole{around_m, filled_m3}}
+                                           : std::nullopt;
+}
+
 // Reaches what passes check_surface, or refuses.
 void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceRepair& repair) {
   const double hole_m = request.longest_hole_m.value_or(size_m(joined));
@@ -211,7 +226,11 @@ void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceR
   if (!request.wrap_m) {
     refuse(*refusal, repair, hole_m, request, advised_wrap_m(joined));
   }
+  const double longest_m = repair.holes.longest_m;
   wrap(mended_surface.pieces_dropped > 0 ? mended_surface.surface : joined, request, repair);
+  if (longest_m > hole_m) {
+    repair.entered = entered_hole(joined, request, longest_m, repair.surface);
+  }
 }
 
 // The first of these numbers of triangles whose surface passes check_surface; else that of the
@@ -307,6 +326,15 @@ std::vector<std::string> describe_changes(const SurfaceRepair& repair,
                                       *request.wrap_m, *repair.wrap_offset_m)
                         : std::string{"not wrapped: that was not needed"});
   }
+  if (repair.entered) {
+    lines.push_back(fmt::format(
+        "warning: the wrap goes inside by a hole {:.4g} m round, larger than the {:.3g} m that it "
+        "bridges: with its holes filled the surface encloses {:.4g} m³ ({}{}{:.3g} fills them; a "
+        "wrap is right for an open sheet)",
+        repair.entered->around_m, request.wrap_m.value(), repair.entered->filled_m3,
+        request.terms->longest_hole, request.terms->before_number,
+        1.01 * repair.entered->around_m));
+  }
   lines.push_back(fmt::format("triangles: {} kept, {} turned, {} dropped, {} added", repair.kept,
                               repair.turned, repair.dropped, repair.added));
   lines.push_back(fmt::format("volume: {:.6g} m³ (before: {}), area: {:.6g} m² (before: {:.6g})",
@@ -320,6 +348,18 @@ std::vector<std::string> describe_changes(const SurfaceRepair& repair,
       "from this one",
       repair.farthest_from_old_m, repair.farthest_from_new_m));
   return lines;
+}
+
+std::optional<double> unfilled_hole_m(const TriangleSurface& surface) {
+  int joined = 0;
+  try {
+    const Holes holes =
+        mended(with_corners_joined(surface, RepairRequest{}.join_share, joined), {0.0, false, 0.0})
+            .holes;
+    return holes.longest_m > size_m(surface) ? std::optional{holes.longest_m} : std::nullopt;
+  } catch (const core::ModelError&) {
+    return std::nullopt;
+  }
 }
 
 double advised_wrap_m(const TriangleSurface& surface) {

@@ -31,12 +31,19 @@ struct RepairRequest {
 };
 inline constexpr int fewest_triangles = 4;  // of a closed surface
 
+// A hole by which a wrap goes inside: it encloses less than the surface does once that is filled.
+struct EnteredHole {
+  double around_m{};
+  double filled_m3{};
+};
+
 struct SurfaceRepair {
   core::TriangleSurface surface;  // passes check_surface; as read_surface reads ply_text of it
   int corners_joined{};
   Holes holes{};
   int pieces_dropped{};
   std::optional<double> wrap_offset_m{};  // by which a wrap lies outside; unset: not wrapped
+  std::optional<EnteredHole> entered{};   // by the wrap
   // By comparison of the triangles before, once their corners were joined, with those now.
   int kept{};
   int turned{};
@@ -59,6 +66,10 @@ SurfaceRepair repair_surface(const core::TriangleSurface& surface, const RepairR
 // What a repair changed, as measured: sentences, for people.
 std::vector<std::string> describe_changes(const SurfaceRepair& repair,
                                           const RepairRequest& request);
+
+// Round the border of the longest hole, where that is longer than what is filled unasked, the
+// surface's size; else, or where it cannot be mended, unset.
+std::optional<double> unfilled_hole_m(const core::TriangleSurface& surface);
 
 // The gaps that a wrap of it bridges, if nothing else is known: a fiftieth of its size.
 double advised_wrap_m(const core::TriangleSurface& surface);

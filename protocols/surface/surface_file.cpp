@@ -69,6 +69,25 @@ constexpr std::array<Converter, 8> converters{
       source.file, printable(std::string{take_line(text)}), source.bytes.size())};
 }
 
+// What follows the last face, but for its own line's rest and comments.
+void check_off_ends(const SurfaceSource& source, std::istream& read, const SurfaceSoup& soup,
+                    std::size_t points) {
+  const auto at = read.tellg();  // -1 at the end
+  std::string_view rest{source.bytes};
+  rest.remove_prefix(at < 0 ? rest.size() : static_cast<std::size_t>(at) - 1);
+  take_line(rest);
+  while (!rest.empty()) {
+    const std::string_view line = take_line(rest);
+    const auto words = words_of(line);
+    if (!words.empty() && !words.front().starts_with('#')) {
+      throw core::InvalidInput{fmt::format(
+          "{}: is not a surface: a line '{}' is left after all that its header counts ({} points, "
+          "{} faces)",
+          source.file, printable(std::string{line}), points, soup.polygons.size())};
+    }
+  }
+}
+
 SurfaceSoup soup_of_off(const SurfaceSource& source) {
   using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
   SurfaceSoup soup;
@@ -87,6 +106,7 @@ SurfaceSoup soup_of_off(const SurfaceSource& source) {
   if (!is_read || soup.polygons.empty() || !std::ranges::all_of(soup.polygons, is_inside)) {
     refuse_off(source);
   }
+  check_off_ends(source, bytes, soup, points.size());
   for (const Point& p : points) {
     soup.points.emplace_back(p.x(), p.y(), p.z());
   }

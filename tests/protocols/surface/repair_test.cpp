@@ -183,6 +183,21 @@ TEST_CASE("two bodies that cross are refused until they are wrapped, in what con
   CHECK(repair.farthest_from_old_m > 0.5 * wrap_m / 30.0);
 }
 
+TEST_CASE("a wrap that goes inside by a hole is told, with the volume of what fills it",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface open =
+      as_it_is_read(without_triangles(testing::box_surface({0.03, 0.02, 0.01}), 1));
+  protocols::RepairRequest request{.longest_hole_m = 0.01, .wrap_m = 0.002};
+  const auto told = [&] {
+    return fmt::format(
+        "{}", fmt::join(describe_changes(protocols::repair_surface(open, request), request), "\n"));
+  };
+  CHECK_THAT(told(), Contains("warning: the wrap goes inside by a hole") &&
+                         Contains("encloses 6e-06 m³ (--largest-hole 0."));
+  request.longest_hole_m = 1.0;
+  CHECK_THAT(told(), !Contains("warning") && Contains("volume: 6e-06 m³"));
+}
+
 TEST_CASE("holes that touch each other in one corner are not filled but refused",
           "[protocols][surface][repair]") {
   const core::TriangleSurface open = without_triangles(frame(), 2);
@@ -270,14 +285,13 @@ TEST_CASE(
     "many triangles",
     "[protocols][surface][repair]") {
   const core::TriangleSurface body = frame();
-  CHECK_THAT(protocols::command_that_cures(body, "my 'mug'.stl", 0.001),
+  CHECK_THAT(protocols::cures(body, "my 'mug'.stl", 0.001),
              Contains(R"(repair 'my '\''mug'\''.stl' --metres-per-unit 0.001 --wrap)") &&
-                 Contains("--max-triangles 20000"));
+                 Contains("--max-triangles 20000") && !Contains("--largest-hole"));
   core::TriangleSurface large = body;
   large.triangles = body.triangles.replicate(200'001 / body.triangles.rows() + 1, 1).eval();
   CHECK_THROWS_AS(protocols::check_count(large), protocols::SurfaceFault);
-  CHECK_THAT(protocols::command_that_cures(large, "mug.stl", 1.0),
-             Contains("--max-triangles 10000"));
+  CHECK_THAT(protocols::cures(large, "mug.stl", 1.0), Contains("--max-triangles 10000"));
 }
 
 TEST_CASE("a surface that the mesher cannot fill is refused with the command that simplifies it",
@@ -358,10 +372,13 @@ std::string refusal_with(const std::string& repair, const std::string& surface) 
 
 TEST_CASE("a surface is repaired where its protocol asks for that, and nowhere else",
           "[protocols][surface][repair]") {
-  CHECK_THAT(refusal_with("offset_m: [0, 0, 0]", open_tetrahedron()),
-             Contains("surface.file") && Contains("try: tapstudy repair") &&
-                 Contains("in the study, beside the file: repair: {wrap_m: 0.0094, "
-                          "largest_piece: true, max_triangles: 20000}"));
+  CHECK_THAT(
+      refusal_with("offset_m: [0, 0, 0]", open_tetrahedron()),
+      Contains("surface.file") && Contains("try: tapstudy repair") &&
+          Contains("--largest-hole 1.05 --wrap 0.0094") &&
+          Contains("(of an open sheet without --largest-hole 1.05: a skin, or thickness_m)") &&
+          Contains("in the study, beside the file: repair: {largest_hole_m: 1.05, wrap_m: "
+                   "0.0094, largest_piece: true, max_triangles: 20000}"));
   const std::size_t made_before = protocols::repairs_made();
   const protocols::Protocol repaired =
       protocol_with("repair: {largest_hole_m: 2}", open_tetrahedron());

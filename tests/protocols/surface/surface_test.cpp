@@ -237,6 +237,29 @@ TEST_CASE("an STL that is none is refused with what was found", "[protocols][sur
   const std::string binary = as_binary_stl(read_text("cube.obj", cube_obj(" ", "")));
   CHECK_THROWS_WITH(read_text("cut.stl", binary.substr(0, binary.size() - 60)),
                     Contains("12 triangles by its header, and with bytes for 10"));
+  for (const char* name : {"solid ", "cut at"}) {
+    std::string few = binary;
+    few.replace(0, 6, name);
+    few[80] = 10;
+    CHECK_THROWS_WITH(read_text("few.stl", few),
+                      Contains("10 triangles by its header, and with bytes for 12"));
+  }
+}
+
+TEST_CASE("a PLY or OFF with more than its header counts is refused, blanks and comments not",
+          "[protocols][surface]") {
+  const core::TriangleSurface cube = read_text("cube.obj", cube_obj(" ", ""));
+  for (const auto& [name, text] :
+       {std::pair{"cube.ply", as_ply(cube)}, {"cube.off", as_off(cube)}}) {
+    CAPTURE(name);
+    CHECK(are_equal(read_text(name, text + " \n\n"), cube));
+    const std::string few = name == std::string_view{"cube.off"}
+                                ? testing::replaced(text, "8 12", "8 11")
+                                : testing::replaced(text, "face 12", "face 11");
+    CHECK_THROWS_WITH(read_text(name, few), Contains("left after all that its header counts (8 "
+                                                     "points, 11 faces)"));
+  }
+  CHECK(are_equal(read_text("cube.off", as_off(cube) + "# written by hand\n"), cube));
 }
 
 namespace {

@@ -344,7 +344,7 @@ core::Shape read_surface_shape(MapReader& plate, const SurfaceFiles& files, Prot
                 shape = asked.thickness_m
                             ? checked_sheet(std::move(surface), *asked.thickness_m)
                             : solid_of(std::move(surface), asked.file, asked.metres_per_unit);
-              } catch (const core::InvalidInput& error) {
+              } catch (const core::Error& error) {  // also what cannot be modelled or repaired
                 reader.reject("file", error.what());
               }
             });

@@ -434,3 +434,109 @@ TEST_CASE("what a repair of a protocol's surface cannot cure is refused in the p
   CHECK_THAT(said,
              Contains("largest_hole_m: 1.05 fills") && Contains("wrap_m: 0.0") && !Contains("--"));
 }
+
+// tests/data/every_key.yaml with another sheet, in memory.
+namespace {
+std::string refusal_of_sheet(const std::string& keys, const std::string& surface) {
+  const std::string file = testing::source("tests/data/every_key.yaml");
+  const std::string text =
+      testing::replaced(testing::contents(file),
+                        "{file: tetrahedron.off, metres_per_unit: 0.001, thickness_m: 0.0005}",
+                        "{file: sheet.ply, metres_per_unit: 1, " + keys + "}");
+  try {
+    protocols::parse_protocol({text, file}, [&](const std::string& name) {
+      return name == "sheet.ply" ? surface
+                                 : testing::contents(testing::source("tests/data/" + name));
+    });
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+core::TriangleSurface flat_grid(int cells) {
+  std::vector<Eigen::RowVector3d> points;
+  std::vector<Eigen::RowVector3i> triangles;
+  for (int i = 0; i <= cells; ++i) {
+    for (int j = 0; j <= cells; ++j) {
+      points.emplace_back(-0.1 + 0.2 * i / cells, -0.1 + 0.2 * j / cells, 0.0);
+      if (i < cells && j < cells) {
+        const int at = i * (cells + 1) + j;
+        triangles.emplace_back(at, at + cells + 1, at + cells + 2);
+        triangles.emplace_back(at, at + cells + 2, at + 1);
+      }
+    }
+  }
+  return testing::surface_of(points, triangles);
+}
+core::TriangleSurface with_triangle(core::TriangleSurface surface, const Eigen::RowVector3i& more) {
+  surface.triangles.conservativeResize(surface.triangles.rows() + 1, 3);
+  surface.triangles.bottomRows(1) = more;
+  return surface;
+}
+}  // namespace
+
+TEST_CASE("a surface that is no middle of a sheet is refused with what and where",
+          "[protocols][surface][sheet]") {
+  struct Case {
+    core::TriangleSurface surface;
+    const char* keys;
+    const char* refusal;
+  };
+  const core::TriangleSurface flat = flat_grid(2);
+  core::TriangleSurface large = flat;
+  large.points_m *= 100.0;
+  core::TriangleSurface turned = flat;
+  turned.triangles.row(0).reverseInPlace();
+  const core::TriangleSurface folded = testing::surface_of(
+      {{-0.1, -0.1, 0.0}, {0.1, -0.1, 0.0}, {-0.1, 0.1, 0.0}, {-0.1, 0.1, 0.001}},
+      {{0, 1, 2}, {1, 0, 3}});
+  core::TriangleSurface apart = testing::joined_surfaces(flat, flat);
+  apart.points_m.bottomRows(flat.points_m.rows()).array() += 0.05;
+  const std::vector<Case> cases{
+      {flat, "thickness_m: 0.0005", "accepted"},
+      {flat, "thickness_m: 0.2", "thickness_m"},
+      {flat, "thickness_m: 0.0005, repair: {}", "makes closed surfaces of solids"},
+      {flat, "thickness_m: 0.02", "less than 20 times its thickness_m"},
+      {flat_grid(56), "thickness_m: 0.0005", "6272 triangles (with thickness_m at most 6000)"},
+      {large, "thickness_m: 0.0005", "is metres_per_unit right?"},
+      {turned, "thickness_m: 0.0005", "face opposite ways along the edge"},
+      {with_triangle(flat, {4, 0, 2}), "thickness_m: 0.0005", "3 triangles meet (two may)"},
+      {apart, "thickness_m: 0.0005", "it is in several pieces"},
+      {folded, "thickness_m: 0.0005", "the sheet is folded back on itself"}};
+  for (const Case& one : cases) {
+    CAPTURE(one.refusal);
+    CHECK_THAT(refusal_of_sheet(one.keys, protocols::ply_text(one.surface)), Contains(one.refusal));
+  }
+}
+
+TEST_CASE("a sheet whose faces run through themselves, or with settings of tetrahedra, is refused",
+          "[protocols][surface][sheet]") {
+  // a strip that winds back above itself at less than its thickness
+  std::vector<Eigen::RowVector3d> points;
+  std::vector<Eigen::RowVector3i> triangles;
+  constexpr int steps = 24;
+  for (int i = 0; i <= steps; ++i) {
+    const double turn = 2.0 * M_PI * 1.1 * i / steps;
+    const double radius_m = 0.1 + 0.001 * i / steps;
+    for (const double y : {-0.1, 0.1}) {
+      points.emplace_back(radius_m * std::cos(turn), y, radius_m * std::sin(turn));
+    }
+    if (i < steps) {
+      triangles.emplace_back(2 * i, 2 * i + 1, 2 * i + 3);
+      triangles.emplace_back(2 * i, 2 * i + 3, 2 * i + 2);
+    }
+  }
+  const std::string wound = protocols::ply_text(testing::surface_of(points, triangles));
+  CHECK_THAT(refusal_of_sheet("thickness_m: 0.003", wound),
+             Contains("the faces of the sheet, half of thickness_m beside the surface") &&
+                 Contains("runs through itself"));
+  const std::string file = testing::source("tests/data/every_key.yaml");
+  const std::string text =
+      testing::replaced(testing::contents(file), "{shell_width_m: 0.1}", "{order: 2}");
+  CHECK_THROWS_WITH(
+      protocols::parse_protocol({text, file},
+                                [](const std::string& name) {
+                                  return testing::contents(testing::source("tests/data/" + name));
+                                }),
+      Contains("is of tetrahedra, and the surface has a thickness_m"));
+}

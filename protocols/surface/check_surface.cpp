@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -118,6 +119,19 @@ Mesh mesh_of(const TriangleSurface& surface) {
   return mesh;
 }
 
+// Of closed pieces.
+bool has_nested_pieces(const Mesh& mesh) {
+  std::vector<std::size_t> volume(mesh.number_of_faces());
+  const auto volume_of =
+      boost::make_iterator_property_map(volume.begin(), get(boost::face_index, mesh));
+  std::vector<std::size_t> levels;
+  pmp::volume_connected_components(mesh, volume_of,
+                                   CGAL::parameters::nesting_levels(std::ref(levels))
+                                       .do_orientation_tests(false)
+                                       .do_self_intersection_tests(false));
+  return std::ranges::any_of(levels, [](std::size_t level) { return level > 0; });
+}
+
 void check_one_piece(const TriangleSurface& surface, const Mesh& mesh) {
   std::vector<std::size_t> piece(mesh.number_of_faces());
   const auto piece_of =
@@ -127,9 +141,12 @@ void check_one_piece(const TriangleSurface& surface, const Mesh& mesh) {
   }
   const auto other = std::ranges::find_if(piece, [](std::size_t number) { return number != 0; });
   throw SeveralPieces{fmt::format(
-      "surface: it is in several pieces, one at {}, another at {} (a body is one closed shell)",
+      "surface: it is in several pieces, one at {}, another at {} (a body is one closed shell{})",
       place(surface, surface.triangles(0, 0)),
-      place(surface, surface.triangles(other - piece.begin(), 0)))};
+      place(surface, surface.triangles(other - piece.begin(), 0)),
+      has_nested_pieces(mesh)
+          ? "; a piece within another is a cavity, which a body here cannot have"
+          : "")};
 }
 
 void check_volume(const TriangleSurface& surface, const Mesh& mesh) {

@@ -308,6 +308,21 @@ std::string describe_holes(const Holes& holes) {
                    "{:.4g}) m",
                    holes.filled, holes.longest_m, holes.at_m[0], holes.at_m[1], holes.at_m[2]);
 }
+
+constexpr double notable_share = 0.01;  // of the volume
+
+// A layer as thick as the wrap's offset, all over; of no skin, which is nothing but that.
+std::optional<double> larger_by_wrap(const SurfaceRepair& repair) {
+  const double volume_m3 = core::volume_m3(repair.surface);
+  const double layer_m3 = repair.wrap_offset_m.value_or(0.0) * area_m2(repair.surface);
+  return repair.wrap_offset_m && !is_skin(repair.surface, *repair.wrap_offset_m)
+             ? std::optional{layer_m3 / (volume_m3 - layer_m3)}
+             : std::nullopt;
+}
+
+bool is_about(double volume_m3, double before_m3) {
+  return std::abs(volume_m3 - before_m3) <= notable_share * std::abs(before_m3);
+}
 }  // namespace
 
 std::vector<std::string> describe_changes(const SurfaceRepair& repair,
@@ -326,6 +341,12 @@ std::vector<std::string> describe_changes(const SurfaceRepair& repair,
                                       *request.wrap_m, *repair.wrap_offset_m)
                         : std::string{"not wrapped: that was not needed"});
   }
+  if (const auto larger = larger_by_wrap(repair); larger && *larger > notable_share) {
+    lines.push_back(fmt::format(
+        "warning: that makes the body {:.2g} % larger, and as much thicker where it is thin: its "
+        "frequencies are others (a smaller {} changes less)",
+        100.0 * *larger, request.terms->wrap));
+  }
   if (repair.entered) {
     lines.push_back(fmt::format(
         "warning: the wrap goes inside by a hole {:.4g} m round, larger than the {:.3g} m that it "
@@ -343,6 +364,12 @@ std::vector<std::string> describe_changes(const SurfaceRepair& repair,
                                   ? fmt::format("{:.6g}", *repair.volume_before_m3)
                                   : std::string{"none, it was open or not oriented"},
                               area_m2(repair.surface), repair.area_before_m2));
+  if (repair.volume_before_m3 &&
+      !is_about(core::volume_m3(repair.surface), *repair.volume_before_m3)) {
+    lines.push_back(fmt::format(
+        "warning: it encloses {:.3g} times what it did: it is another body, with another mass",
+        core::volume_m3(repair.surface) / *repair.volume_before_m3));
+  }
   lines.push_back(fmt::format(
       "largest distance at sampled points: {:.3g} m from the surface before, and of that {:.3g} m "
       "from this one",

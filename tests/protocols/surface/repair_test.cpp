@@ -221,6 +221,40 @@ TEST_CASE("of several pieces the largest is kept where that is asked for",
   CHECK(repair.dropped == 12);
 }
 
+TEST_CASE("a triangle left over beside a body is dropped by what is advised, which wraps nothing",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface left_over = testing::surface_of(
+      {{0.001, 0.001, 0.012}, {0.002, 0.001, 0.012}, {0.001, 0.002, 0.013}}, {{0, 1, 2}});
+  const core::TriangleSurface spiked = as_it_is_read(testing::joined_surfaces(frame(), left_over));
+  const std::string cure = protocols::cures(spiked, "box.stl", 1.0);
+  CHECK_THAT(cure, Contains("--largest-piece --out") && Contains("repair: {largest_piece: true}") &&
+                       !Contains("--wrap"));
+  check_restored(protocols::repair_surface(spiked, {.is_largest_piece_only = true}));
+  CHECK_THAT(protocols::cures(as_it_is_read(testing::joined_surfaces(frame(), cube_at(0.1, 0.01))),
+                              "two.stl", 1.0),
+             Contains("--wrap"));
+}
+
+TEST_CASE("a repair that makes another body says how much larger it is",
+          "[protocols][surface][repair]") {
+  const auto lines_of = [](const core::TriangleSurface& surface, double wrap_m) {
+    const protocols::RepairRequest request{.is_largest_piece_only = true, .wrap_m = wrap_m};
+    return fmt::format("{}", fmt::join(protocols::describe_changes(
+                                           protocols::repair_surface(surface, request), request),
+                                       "\n"));
+  };
+  core::TriangleSurface cavity = cube_at(0.005, 0.01);
+  cavity.triangles.col(1).swap(cavity.triangles.col(2));
+  const core::TriangleSurface hollow =
+      as_it_is_read(testing::joined_surfaces(cube_at(0.0, 0.02), cavity));
+  CHECK_THAT(lines_of(hollow, 0.002), Contains("times what it did"));  // 8 of 7 mL and more
+  CHECK_THAT(lines_of(without_triangles(frame(), 1), 0.001), !Contains("warning"));
+  // The law: a layer of the offset on all sides.
+  const core::TriangleSurface doubled =
+      as_it_is_read(testing::joined_surfaces(cube_at(0.0, 0.01), cube_at(0.005, 0.01)));
+  CHECK_THAT(lines_of(doubled, 0.001), Contains("% larger"));
+}
+
 TEST_CASE("a sheet is wrapped into a skin a third as thick as what the wrap bridges",
           "[protocols][surface][repair]") {
   constexpr double side_m = 0.02;

@@ -519,7 +519,14 @@ TEST_CASE("a surface that encloses no body is refused with what and where", "[co
   CHECK_THROWS_WITH(check_surface(inside_out), Contains("inward"));
 
   CHECK_THROWS_WITH(check_surface(testing::joined_surfaces(box, shifted(box, {1.0, 0.0, 0.0}))),
-                    Contains("several pieces"));
+                    Contains("several pieces") && !Contains("cavity"));
+  core::TriangleSurface inner = box;
+  const core::Bounds around = core::bounds(box);
+  const Eigen::RowVector3d centre_m = 0.5 * (around.low_m + around.high_m).transpose();
+  inner.points_m = (0.5 * (box.points_m.rowwise() - centre_m)).rowwise() + centre_m;
+  CHECK_THROWS_WITH(check_surface(testing::joined_surfaces(box, inner)), Contains("cavity"));
+  inner.triangles.col(1).swap(inner.triangles.col(2));  // facing into the cavity
+  CHECK_THROWS_WITH(check_surface(testing::joined_surfaces(box, inner)), Contains("cavity"));
   CHECK_THROWS_WITH(check_surface(testing::box_surface({600.0, 600.0, 50.0})),
                     Contains("600") && Contains("metres_per_unit"));
 

@@ -192,8 +192,9 @@ const MatlabChannel& chosen_of(const std::vector<MatlabChannel>& channels,
 
 // By the times or the scalar beside the chosen array, or else of the file.
 std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
-                                  const MatlabArray& chosen, std::size_t samples,
-                                  const std::string& path) {
+                                  const MatlabArray& chosen, const ReadingOptions& options,
+                                  Recording& recording) {
+  const std::string& path = recording.file;
   std::stable_partition(arrays.begin(), arrays.end(), [&](const MatlabArray& array) {
     return array.structure() == chosen.structure();
   });
@@ -203,9 +204,11 @@ std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
     return array.size() == 1 && std::ranges::find(names, name) != names.end();
   };
   for (const MatlabArray& array : arrays) {
-    if (is_time(array) && array.size() == samples) {
-      return rate_of_times(values_of(file, array, path), [&](std::size_t) { return path; }) /
-             seconds_per_unit(array.own_name());
+    if (is_time(array) && array.size() == recording.samples.size()) {
+      const auto rate = rate_of_times(
+          values_of(file, array, path), options, [&](std::size_t) { return path; },
+          recording.remarks);
+      return rate ? std::optional{*rate / seconds_per_unit(array.own_name())} : std::nullopt;
     }
   }
   const auto scalar = std::ranges::find_if(arrays, is_rate);
@@ -287,8 +290,7 @@ Recording read_matlab_file(const std::string& file, const ReadingOptions& option
       channel_of(values_of(opened.get(), *chosen.array, file), *chosen.array, chosen.channel),
       {}};
   check_samples(recording);
-  const auto rate_hz =
-      matlab_rate(opened.get(), arrays, *chosen.array, recording.samples.size(), file);
+  const auto rate_hz = matlab_rate(opened.get(), arrays, *chosen.array, options, recording);
   if (!rate_hz && !(options.rate_hz > 0.0)) {
     throw core::InvalidInput{file + ": states no rate, by times t or a scalar fs (give --rate HZ)"};
   }

@@ -123,11 +123,14 @@ std::optional<TimeColumn> time_column(const Table& table, const ReadingOptions& 
   return ascends ? std::optional{TimeColumn{0, 1.0}} : std::nullopt;
 }
 
-double rate_from_times(const Table& table, const TimeColumn& column) {
+std::optional<double> rate_from_times(const Table& table, const TimeColumn& column,
+                                      const ReadingOptions& options,
+                                      std::vector<std::string>& remarks) {
   const auto place = [&](std::size_t row) {
     return fmt::format("{}:{}", table.file(), table.line(row));
   };
-  return rate_of_times(table.values(column.index), place) / column.seconds_per_unit;
+  const auto rate = rate_of_times(table.values(column.index), options, place, remarks);
+  return rate ? std::optional{*rate / column.seconds_per_unit} : std::nullopt;
 }
 
 // The column with this header or, failing that, this number from 1.
@@ -178,7 +181,7 @@ Recording read_csv_recording(std::istream& text, const std::string& file,
   }
   const std::optional<TimeColumn> time = time_column(table, options);
   const std::size_t column = data_column(table, options, time);
-  const auto of_times_hz = time ? std::optional{rate_from_times(table, *time)} : std::nullopt;
+  const auto of_times_hz = time ? rate_from_times(table, *time, options, remarks) : std::nullopt;
   Recording recording{file, table.title(column), 0.0, table.values(column), std::move(remarks)};
   recording.rate_hz =
       agreed_rate(of_times_hz, options, fmt::format("{}:{}", file, time ? table.last_line() : 1),

@@ -81,11 +81,25 @@ std::pair<double, double> uniform_grid(const std::vector<double>& times) {
 }
 }  // namespace
 
-double rate_of_times(const std::vector<double>& times,
-                     const std::function<std::string(std::size_t)>& place) {
+namespace {
+// Times that are not uniform: thrown, or remarked on where another rate holds.
+void refuse_times(const std::string& place, const std::string& fault, const std::string& advice,
+                  const ReadingOptions& options, std::vector<std::string>& remarks) {
+  if (!(options.trusts_rate && options.rate_hz > 0.0)) {
+    throw core::InvalidInput{fmt::format("{}: {}{}", place, fault, advice)};
+  }
+  remarks.push_back(
+      fmt::format("{}: {:g} samples a second were taken, by --trust-rate", fault, options.rate_hz));
+}
+}  // namespace
+
+std::optional<double> rate_of_times(const std::vector<double>& times, const ReadingOptions& options,
+                                    const std::function<std::string(std::size_t)>& place,
+                                    std::vector<std::string>& remarks) {
   const auto [start, period] = uniform_grid(times);
   if (!(period > 0.0)) {
-    throw core::InvalidInput{place(times.size() - 1) + ": times must ascend"};
+    refuse_times(place(times.size() - 1), "times must ascend", "", options, remarks);
+    return std::nullopt;
   }
   double furthest = 0.0;
   std::size_t worst_step = 1;
@@ -98,11 +112,15 @@ double rate_of_times(const std::vector<double>& times,
     worst_misfit = std::max(misfit, worst_misfit);
   }
   if (furthest > max_jitter_periods) {
-    throw core::InvalidInput{fmt::format(
-        "{}: times are up to {:.2g} periods from a uniform grid (at most {}); here the step is "
-        "{:.3g} periods: samples are missing or were not taken uniformly",
-        place(worst_step), furthest, max_jitter_periods,
-        (times[worst_step] - times[worst_step - 1]) / period)};
+    const std::string advice = fmt::format(
+        " (at most {}); here the step is {:.3g} periods: samples are missing or were not taken "
+        "uniformly (if they were, and the times alone are rounded, as whole milliseconds are: "
+        "--rate HZ --trust-rate)",
+        max_jitter_periods, (times[worst_step] - times[worst_step - 1]) / period);
+    refuse_times(place(worst_step),
+                 fmt::format("times are up to {:.2g} periods from a uniform grid", furthest),
+                 advice, options, remarks);
+    return std::nullopt;
   }
   return 1.0 / period;
 }

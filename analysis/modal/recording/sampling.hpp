@@ -13,10 +13,12 @@ double seconds_per_unit(const std::string& name);
 std::string with_ascii_micro(const std::string& text);
 
 // The rate of the even times nearest to these (least squares) [1 / their unit]. place(i) begins the
-// message about one of them, "file:line" or "file". Throws InvalidInput for times that do not
-// ascend, or are further from a grid than max_jitter_periods.
-double rate_of_times(const std::vector<double>& times,
-                     const std::function<std::string(std::size_t)>& place);
+// message about one of them, "file:line" or "file". Unset, with a remark, for times that do not
+// ascend, or are further from a grid than max_jitter_periods, if a rate is given that is to be
+// trusted; otherwise throws InvalidInput for them.
+std::optional<double> rate_of_times(const std::vector<double>& times, const ReadingOptions& options,
+                                    const std::function<std::string(std::size_t)>& place,
+                                    std::vector<std::string>& remarks);
 
 // The rate that holds: the file's, the one given if they are the same within 0.1 % or it is to be
 // trusted, which adds a remark. place begins the message, stated is how the file says its rate:

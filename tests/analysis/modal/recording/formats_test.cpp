@@ -139,6 +139,25 @@ TEST_CASE("a rate given beside another one is refused, or taken and said if it i
   CHECK_THAT(recording.remarks.front(), Contains("2000") && Contains("1900"));
 }
 
+TEST_CASE("times that are rounded to whole milliseconds give way to a rate that is trusted",
+          "[analysis][recordings][formats]") {
+  std::string text = "time_ms,acc\n";
+  for (int i = 0; i < 200; ++i) {
+    text += fmt::format("{},{:.9g}\n", i * 1000 / 1600, sample_at(i));
+  }
+  ReadingOptions options;
+  CHECK_THROWS_WITH(read_text(text, options), Contains("--rate HZ --trust-rate"));
+  options.rate_hz = 1600.0;
+  CHECK_THROWS_WITH(read_text(text, options), Contains("--rate HZ --trust-rate"));
+  options.trusts_rate = true;
+  const Recording recording = read_text(text, options);
+  CHECK(recording.rate_hz == 1600.0);
+  CHECK(recording.samples.size() == 200);
+  REQUIRE(recording.remarks.size() == 1);
+  CHECK_THAT(recording.remarks.front(),
+             Contains("periods from a uniform grid: 1600 samples a second were taken"));
+}
+
 namespace {
 // A data set 58 as the format's description lays it out, without its values.
 std::string header_58(const std::string& kind, int function_type, int value_type, int node) {

@@ -11,6 +11,8 @@ constexpr double beginning_s = 0.01;
 constexpr double longer_beginning_s = 0.04;
 constexpr double usable_share = 0.47;  // of the rate
 constexpr double over_rest = 3.0;
+constexpr double strong_share = 0.15;  // of the largest
+constexpr double strong_over_rest = 1.5;
 constexpr double prominence = 1.5;
 constexpr Eigen::Index beside = 6;  // bins within which a peak stands out
 constexpr double over_decays = 0.8;
@@ -47,11 +49,13 @@ double highest_peak_within(double begin_s, const FreeDecay& decay, double low_hz
   const auto count = static_cast<Eigen::Index>(std::lround(begin_s * decay.rate_hz));
   const Magnitudes begin = magnitudes_of(decay.samples.head(count), decay.rate_hz, low_hz);
   const Magnitudes rest = magnitudes_of(decay.samples.tail(count), decay.rate_hz, low_hz);
-  const double least = weakest_sought * begin.values.maxCoeff();
+  const double largest = begin.values.maxCoeff();
   double highest_hz = 0.0;
   for (Eigen::Index i = 0; i < begin.values.size(); ++i) {
     const double value = begin.values[i];
-    if (value >= least && value >= over_rest * rest.values[i] && is_peak(begin.values, i)) {
+    const double fall = value >= strong_share * largest ? strong_over_rest : over_rest;
+    if (value >= weakest_sought * largest && value >= fall * rest.values[i] &&
+        is_peak(begin.values, i)) {
       highest_hz = begin.first_hz + static_cast<double>(i + 1) * begin.bin_hz;
     }
   }
@@ -78,6 +82,21 @@ double highest_peak_hz(const std::vector<FreeDecay>& decays, double low_hz) {
     highest_hz.push_back(highest_peak_of(decay, low_hz));
   }
   return quantile(highest_hz, over_decays);
+}
+
+double band_end_hz(const std::vector<FreeDecay>& decays, double low_hz) {
+  constexpr double least_hz = 100.0;
+  constexpr double above_peak = 1.25;
+  constexpr double most_outside = 0.5;
+  double end_hz = std::max(least_hz, above_peak * highest_peak_hz(decays, low_hz));
+  for (;;) {
+    const EnergyOutside beyond = energy_outside(decays, {low_hz, end_hz}, low_hz);
+    const double further_hz = above_peak * beyond.peak_hz;
+    if (beyond.share <= most_outside || further_hz <= end_hz) {
+      return end_hz;
+    }
+    end_hz = further_hz;
+  }
 }
 
 EnergyOutside energy_outside(const std::vector<FreeDecay>& decays, const Band& band,

@@ -20,8 +20,6 @@ namespace tapstudy::runner {
 namespace {
 constexpr double default_low_hz = 10.0;
 constexpr double sinusoid_high_hz = 1000.0;
-constexpr double least_high_hz = 100.0;
-constexpr double above_highest_peak = 1.25;
 constexpr double usable_rate_share = 0.4;  // of the rate; sensors' own filters begin above
 constexpr double max_rate_share = 0.47;
 constexpr double told_energy_outside = 0.01;
@@ -42,10 +40,9 @@ analysis::Band band_sought(const TapQuestion& question,
   if (question.band) {
     return *question.band;
   }
-  const double follows_hz = std::max(
-      least_high_hz, above_highest_peak * analysis::highest_peak_hz(decays, default_low_hz));
   const double usable_hz = usable_rate_share * rate_hz;
-  return {default_low_hz, std::min({usable_hz, follows_hz, band_limit_hz.value_or(usable_hz)})};
+  return {default_low_hz, std::min({usable_hz, analysis::band_end_hz(decays, default_low_hz),
+                                    band_limit_hz.value_or(usable_hz)})};
 }
 }  // namespace
 

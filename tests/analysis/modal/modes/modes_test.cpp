@@ -741,6 +741,22 @@ TEST_CASE("the band holds low modes side by side", "[analysis][modal]") {
   CHECK(highest_hz < 720.0);
 }
 
+TEST_CASE("the band holds what rings on until the next tap cuts it off", "[analysis][modal]") {
+  core::Rng rng{7};
+  FreeDecay decay = testing::planted_decay({{{200.0, 0.002}, 1.0}, {{415.0, 0.002}, 0.6}}, 8000.0,
+                                           0.237);  // fallen by less than half
+  testing::add_noise(decay, 40.0, rng);
+  const double end_hz = band_end_hz({decay, decay, decay}, 10.0);
+  CHECK(end_hz > 430.0);
+  CHECK(end_hz < 700.0);
+}
+
+TEST_CASE("the band holds most of the energy, whatever its peaks do", "[analysis][modal]") {
+  const FreeDecay tone = testing::planted_decay({{{700.0, 0.0}, 1.0}}, 8000.0, 0.3);
+  const double end_hz = band_end_hz({tone, tone, tone}, 10.0);
+  CHECK(energy_outside({tone}, {10.0, end_hz}, 10.0).share < 0.5);
+}
+
 TEST_CASE("poles without some decays are to first order what a fit of the others gives",
           "[analysis][modal]") {
   core::Rng rng{12};

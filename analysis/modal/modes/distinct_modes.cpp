@@ -89,7 +89,7 @@ class Neighbourhood {
   // The mode that all of it is; unset if it is not one.
   std::optional<RepeatedMode> one_mode() const {
     const std::vector<RepeatedMode> members = all_held();
-    const std::optional<RestingFit> best = single();
+    const std::optional<RestingFit> best = supported_single();
     if (!best) {
       return std::nullopt;
     }
@@ -103,6 +103,31 @@ class Neighbourhood {
   }
 
  private:
+  std::optional<RestingFit> supported_single() const {
+    std::optional<RestingFit> best = single();
+    return !best || is_free_decay(*best) ? best : single(1);
+  }
+
+  // At a tap, too, a mode loses energy; and what follows its amplitude does so alike in most taps.
+  static bool is_free_decay(const RestingFit& fit) {
+    if (fit.poles.front().terms == 1) {
+      return true;
+    }
+    const Pole& rest = fit.poles.front().pole;
+    const AtTap at_tap = at_taps(fit);
+    return at_tap.damping_ratio > 0.0 &&
+           (most_move_alike(fit, &Pole::frequency_hz, rest.frequency_hz) ||
+            most_move_alike(fit, &Pole::damping_ratio, rest.damping_ratio));
+  }
+
+  static bool most_move_alike(const RestingFit& fit, double Pole::*part, double at_rest) {
+    constexpr double most = 0.8;
+    const auto up = std::ranges::count_if(
+        fit.seen, [&](const SeenAtTap& seen) { return seen.pole.*part > at_rest; });
+    const double share = static_cast<double>(up) / static_cast<double>(fit.seen.size());
+    return std::max(share, 1.0 - share) >= most;
+  }
+
   static std::vector<double> lines_in(const TapModes& tap, const Band& near) {
     std::vector<double> lines;
     std::ranges::copy_if(tap.lines_hz, std::back_inserter(lines),

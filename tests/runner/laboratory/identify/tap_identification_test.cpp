@@ -167,6 +167,41 @@ TEST_CASE("a mode's damping does not depend on modes in other parts of the band"
   }
 }
 
+namespace {
+constexpr double humming_rate_hz = 4000.0;
+
+runner::TapIdentification found_in(const std::string& file, const std::vector<double>& samples) {
+  std::string text = "live\n";
+  for (const double sample : samples) {
+    text += fmt::format("{:.7g}\n", sample);
+  }
+  testing::write(file, text);
+  runner::TapQuestion question;
+  question.recordings = {file};
+  question.reading.rate_hz = humming_rate_hz;
+  runner::Progress progress{"identifying"};
+  return runner::identify_taps(question, progress);
+}
+}  // namespace
+
+// The oracle is what was planted, of which the converter's steps hide much.
+TEST_CASE("a fit whose mode grows at a tap is no mode that follows its amplitude",
+          "[runner][identify]") {
+  const testing::TempDirectory directory;
+  std::vector<double> samples =
+      testing::planted_recording({{{200.0, 0.01}}, {{415.0, 0.008}, 0.6}, {{1100.0, 0.005}, 0.4}},
+                                 {0.5, 1.8, 3.1, 4.4, 5.7, 7.0}, humming_rate_hz, 8.5, 0.002, 4)
+          .samples;
+  for (double& sample : samples) {
+    sample = std::round(12.7 * sample);
+  }
+  const runner::TapIdentification found = found_in(directory / "taps.csv", samples);
+  for (const std::size_t i : found.agreed) {
+    INFO(found.modes[i].frequency_hz.value << " Hz");
+    CHECK((!found.modes[i].at_tap || found.modes[i].at_tap->damping_ratio > 0.0));
+  }
+}
+
 TEST_CASE("one channel named in two ways is refused", "[runner][identify]") {
   const testing::TempDirectory directory;
   const std::string file = directory / "taps.csv";

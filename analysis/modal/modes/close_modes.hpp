@@ -29,6 +29,7 @@ bool may_be_one_nonlinear_mode(const std::vector<Pole>& poles);
 struct ModesOfTaps {
   std::vector<TapModes> taps;
   std::vector<RepeatedMode> modes;  // ascending frequency
+  std::vector<double> taken_hz{};   // steady tones that were taken out of the decays
 };
 
 // Modes whose half-power bandwidths are wider than the gap between them, which a tap alone may show

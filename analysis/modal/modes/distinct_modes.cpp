@@ -103,8 +103,12 @@ class Neighbourhood {
   }
 
  private:
+  // What is left of a tone that was taken out looks like a mode that follows its amplitude.
   std::optional<RestingFit> supported_single() const {
-    std::optional<RestingFit> best = single();
+    const bool is_beside_tone = std::ranges::any_of(found_.taken_hz, [&](double hz) {
+      return std::abs(hz - centre_of(strongest_)) <= reach_hz_;
+    });
+    std::optional<RestingFit> best = single(is_beside_tone ? 1 : numbers_of_terms.back());
     return !best || is_free_decay(*best) ? best : single(1);
   }
 

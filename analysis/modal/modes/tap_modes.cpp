@@ -86,9 +86,10 @@ bool is_near(double frequency_hz, double line_hz) {
   return std::abs(frequency_hz / line_hz - 1.0) < same_line;
 }
 
-// A pole on a line that is in the fit already.
-bool is_at_line(const Pole& pole, const std::vector<double>& lines_hz) {
-  return std::abs(pole.damping_ratio) < same_line &&
+// A pole on a line that is in the fit already, and no mode that decays there.
+bool is_at_line(const Pole& pole, double duration_s, const std::vector<double>& lines_hz) {
+  const double fall = 2.0 * std::numbers::pi * pole.frequency_hz * pole.damping_ratio * duration_s;
+  return std::abs(pole.damping_ratio) < same_line && fall < plain_fall &&
          std::ranges::any_of(lines_hz,
                              [&](double line_hz) { return is_near(pole.frequency_hz, line_hz); });
 }
@@ -299,7 +300,7 @@ TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& 
     const auto known = std::ranges::find_if(before.modes, [&](const TapMode& mode) {
       return mode.fitted.pole.frequency_hz == fitted.pole.frequency_hz;
     });
-    if (is_at_line(fitted.pole, lines_hz)) {
+    if (is_at_line(fitted.pole, decay.duration_s(), lines_hz)) {
       continue;
     }
     candidates.push_back({fitted.pole, 0, std::nullopt});
@@ -329,6 +330,11 @@ FreeDecay without_modes(FreeDecay decay, const TapModes& tap) {
     }
   }
   return decay;
+}
+
+bool is_among_lines(double frequency_hz, const std::vector<double>& lines_hz) {
+  return std::ranges::any_of(lines_hz,
+                             [&](double line_hz) { return is_near(frequency_hz, line_hz); });
 }
 
 std::vector<double> missed_lines(const TapModes& tap, const std::vector<TapModes>& taps) {

@@ -56,6 +56,9 @@ std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<doubl
 // of nearly the same frequency hum may go unnoticed, and falsify its damping. Each once.
 std::vector<double> missed_lines(const TapModes& tap, const std::vector<TapModes>& taps);
 
+// Within 1 %, as above.
+bool is_among_lines(double frequency_hz, const std::vector<double>& lines_hz);
+
 // One tap's modes of several parts of a band, as if they had been found together. Of one part: that
 // part.
 TapModes joined(const FreeDecay& decay, const Band& band, const std::vector<TapModes>& parts);

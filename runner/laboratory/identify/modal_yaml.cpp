@@ -90,11 +90,12 @@ std::string ratios_found(const ModalFindings& found, const std::string& indent) 
   for (const std::size_t i : found.agreed) {
     const analysis::RepeatedMode& mode = found.modes[i];
     text +=
-        fmt::format("{}#   {:.6g} Hz: {:.5g}  {}{}\n", indent, mode.frequency_hz.value,
+        fmt::format("{}#   {:.6g} Hz: {:.5g}  {}{}{}{}\n", indent, mode.frequency_hz.value,
                     mode.damping_ratio.value, comment(mode.damping_ratio).substr(2),
                     mode.at_tap ? fmt::format("; at rest, at a tap {:.6g} Hz: {:.3g}",
                                               mode.at_tap->frequency_hz, mode.at_tap->damping_ratio)
-                                : "");
+                                : "",
+                    mode.why.empty() ? "" : "; ", mode.why);
   }
   return text;
 }

@@ -14,6 +14,7 @@
 #include "analysis/modal/modes/distinct_modes.hpp"
 #include "analysis/modal/modes/mode_kinds.hpp"
 #include "analysis/modal/modes/one_resonance.hpp"
+#include "analysis/modal/modes/steady_tone.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "core/error.hpp"
 namespace tapstudy::runner {
@@ -144,7 +145,11 @@ PartOfBand identified_in(const analysis::Band& band, const std::vector<Identifie
 void share_lines(const std::vector<IdentifiedTap>& taps, PartOfBand& part, TapRemarks& remarks) {
   const std::vector<analysis::TapModes> alone = part.modes;
   for (std::size_t k = 0; k < part.taps.size(); ++k) {
-    const std::vector<double> lines_hz = analysis::missed_lines(part.modes[k], alone);
+    std::vector<double> lines_hz = analysis::missed_lines(part.modes[k], alone);
+    std::ranges::copy_if(taps[part.taps[k]].beside_hz, std::back_inserter(lines_hz),
+                         [&, known = lines_hz](double hz) {
+                           return part.band.holds(hz) && !analysis::is_among_lines(hz, known);
+                         });
     if (lines_hz.empty()) {
       continue;
     }
@@ -189,7 +194,7 @@ void free_from_one_another(std::vector<PartOfBand>& parts) {
 
 // Part by part of the band; taps that are too short for all of them are left out.
 analysis::ModesOfTaps found_in_parts(const analysis::Band& band, std::vector<IdentifiedTap>& taps,
-                                     TapRemarks& remarks) {
+                                     const std::vector<double>& taken_hz, TapRemarks& remarks) {
   std::vector<std::vector<analysis::TapModes>> pieces(taps.size());
   std::vector<PartOfBand> parts;
   for (const analysis::Band& of_part : analysis::parts_of(band, decays_of(taps))) {
@@ -202,7 +207,7 @@ analysis::ModesOfTaps found_in_parts(const analysis::Band& band, std::vector<Ide
   if (parts.size() > 1) {
     free_from_one_another(parts);
   }
-  analysis::ModesOfTaps found;
+  analysis::ModesOfTaps found{{}, {}, taken_hz};
   for (const PartOfBand& part : parts) {
     analysis::ModesOfTaps in_part = analysis::resolve_close_modes(
         part.decays, part.impacts, part.band,
@@ -283,9 +288,9 @@ struct FoundInTaps {
 };
 
 FoundInTaps looked_at(const analysis::Band& band, std::vector<IdentifiedTap> taps,
-                      TapRemarks& remarks) {
+                      const std::vector<double>& taken_hz, TapRemarks& remarks) {
   FoundInTaps of{std::move(taps), {}};
-  of.found = found_in_parts(band, of.taps, remarks);
+  of.found = found_in_parts(band, of.taps, taken_hz, remarks);
   return of;
 }
 
@@ -324,29 +329,33 @@ std::vector<IdentifiedTap> some_of(const std::vector<IdentifiedTap>& taps) {
 }
 
 FreeTaps free_taps(const analysis::Band& band, const std::vector<IdentifiedTap>& taps,
-                   TapRemarks& remarks) {
+                   const std::vector<double>& taken_hz, TapRemarks& remarks) {
   const std::vector<IdentifiedTap> some = some_of(taps);
-  FoundInTaps first = looked_at(band, some, remarks);
+  FoundInTaps first = looked_at(band, some, taken_hz, remarks);
   const double settled_s =
       first.taps.empty() ? 0.0
                          : analysis::settled_after_s(decays_of(first.taps), impacts_of(first.taps),
                                                      band, first.found);
   if (settled_s <= 0.0) {
-    return {some.size() == taps.size() ? std::move(first) : looked_at(band, taps, remarks), {}};
+    return {
+        some.size() == taps.size() ? std::move(first) : looked_at(band, taps, taken_hz, remarks),
+        {}};
   }
   std::vector<IdentifiedTap> later = taps;
   begin_later(settled_s, later, remarks);
-  FreeTaps result{looked_at(band, std::move(later), remarks), {}};
+  FreeTaps result{looked_at(band, std::move(later), taken_hz, remarks), {}};
   result.died = died_before(settled_s, band, first, result.free.found);
   return result;
 }
-}  // namespace
 
-std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
-                                                   std::vector<IdentifiedTap>& taps,
-                                                   analysis::Quantity quantity,
-                                                   TapRemarks& remarks) {
-  FreeTaps ringing = free_taps(band, taps, remarks);
+// Of decays without these tones.
+std::vector<analysis::RepeatedMode> modes_beside(const std::vector<analysis::ToneOfTaps>& tones,
+                                                 const analysis::Band& band,
+                                                 std::vector<IdentifiedTap>& taps,
+                                                 analysis::Quantity quantity, TapRemarks& remarks) {
+  std::vector<double> taken_hz;
+  std::ranges::transform(tones, std::back_inserter(taken_hz), &analysis::ToneOfTaps::frequency_hz);
+  FreeTaps ringing = free_taps(band, taps, taken_hz, remarks);
   taps = std::move(ringing.free.taps);
   if (taps.empty()) {
     return {};
@@ -359,6 +368,7 @@ std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
   std::vector<analysis::FreeDecay> rests;
   std::ranges::transform(taps, std::back_inserter(rests), &IdentifiedTap::rest);
   analysis::mark_background(rests, modes);
+  analysis::tell_of_tones(tones, median_duration_s(taps), modes);
   analysis::judge_certainty(median_duration_s(taps), modes);
   if (is_one_impact(taps)) {
     const auto slow = motion_below(std::min(default_low_hz, band.low_hz), taps);
@@ -366,5 +376,50 @@ std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
   }
   analysis::mark_combinations(modes, derivatives_of(quantity), likeness_over_sensors(taps, modes));
   return modes;
+}
+
+std::vector<analysis::QuietStretch> stretches_of(const std::vector<IdentifiedTap>& taps) {
+  std::vector<analysis::QuietStretch> stretches;
+  for (const IdentifiedTap& tap : taps) {
+    const double begins_s = static_cast<double>(tap.tap.begin) / tap.decay.rate_hz;
+    stretches.push_back({tap.quiet, begins_s - tap.quiet_s});
+  }
+  return stretches;
+}
+
+// What is known of them; what is not is fitted.
+void take_out(const std::vector<analysis::ToneOfTaps>& tones, std::vector<IdentifiedTap>& taps) {
+  for (const analysis::ToneOfTaps& tone : tones) {
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      IdentifiedTap& tap = taps[i];
+      if (const auto& of_tap = tone.of_taps[i]) {
+        const double begins_s = static_cast<double>(tap.tap.begin) / tap.decay.rate_hz;
+        analysis::take_tone(*of_tap, begins_s - tap.quiet_s, tap.decay);
+        analysis::take_tone(*of_tap, tap.time_s - tap.quiet_s, tap.whole);
+      } else {
+        tap.beside_hz.push_back(tone.frequency_hz);
+      }
+    }
+  }
+}
+}  // namespace
+
+std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
+                                                   std::vector<IdentifiedTap>& taps,
+                                                   analysis::Quantity quantity,
+                                                   TapRemarks& remarks) {
+  std::vector<IdentifiedTap> as_recorded = taps;
+  TapRemarks of_recorded = remarks;
+  std::vector<analysis::RepeatedMode> modes = modes_beside({}, band, taps, quantity, of_recorded);
+  const std::vector<analysis::ToneOfTaps> tones =
+      taps.empty() ? std::vector<analysis::ToneOfTaps>{}
+                   : analysis::tones_in(modes, stretches_of(as_recorded), median_duration_s(taps));
+  if (tones.empty()) {
+    remarks = std::move(of_recorded);
+    return modes;
+  }
+  taps = std::move(as_recorded);
+  take_out(tones, taps);
+  return modes_beside(tones, band, taps, quantity, remarks);
 }
 }  // namespace tapstudy::runner

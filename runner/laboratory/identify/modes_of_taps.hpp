@@ -19,7 +19,8 @@ analysis::Band band_of_sinusoid(const analysis::Band& sought, double rate_hz);
 
 // Sets the taps' modes and returns those over all taps and channels, ascending frequency, with
 // what each of them is. Steady tones that only some taps show are fitted in the others, too, and
-// close modes are told apart by all taps together, or joined where nothing tells them apart. Taps
+// close modes are told apart by all taps together, or joined where nothing tells them apart. Tones
+// within a mode's width are taken out of the taps first, as their rest shows them. Taps
 // that are too short for the band are left out, with a remark: none may be left.
 std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
                                                    std::vector<IdentifiedTap>& taps,

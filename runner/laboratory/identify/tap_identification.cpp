@@ -9,6 +9,7 @@
 
 #include "analysis/modal/modes/mode_kinds.hpp"
 #include "analysis/modal/modes/mode_shapes.hpp"
+#include "analysis/modal/modes/steady_tone.hpp"
 #include "analysis/modal/recording/measured_unit.hpp"
 #include "core/error.hpp"
 #include "protocols/reader/read_protocol.hpp"
@@ -158,7 +159,10 @@ class Identifier {
     std::vector<ChannelState> states;
     std::ranges::transform(file.channels, std::back_inserter(states), state_of);
     std::size_t rests_from = 0;
-    for (const analysis::Tap& tap : found.taps) {
+    for (std::size_t k = 0; k < found.taps.size(); ++k) {
+      const analysis::Tap& tap = found.taps[k];
+      const std::size_t next = k + 1 < found.taps.size() ? found.taps[k + 1].onset
+                                                         : file.channels.front().samples.size();
       hook_(fmt::format("tap {} of {}", tap.impact, file.channels.front().file));
       const auto force = file.force ? std::optional{impact_force(file, tap)} : std::nullopt;
       if (force && force->is_clipped) {
@@ -168,7 +172,7 @@ class Identifier {
         if (add(file.channels[i], states[i], tap)) {
           result_.taps.back().impact = before + tap.impact;
           result_.taps.back().force = force;
-          result_.taps.back().rest = rest_before(file.channels[i], rests_from, tap.onset);
+          give_rest(file.channels[i], rests_from, next, result_.taps.back());
         }
       }
       rests_from = tap.end;
@@ -176,15 +180,26 @@ class Identifier {
     return found.impacts;
   }
 
-  // The last half second of rest, but for what may be the beginning of the impact.
-  static analysis::FreeDecay rest_before(const analysis::Recording& recording, std::size_t from,
-                                         std::size_t onset) {
+  // At most half a second of what is around a tap: [from, its onset) and [its end, next), but for
+  // what may be the beginning of an impact.
+  static void give_rest(const analysis::Recording& recording, std::size_t from, std::size_t next,
+                        IdentifiedTap& one) {
     constexpr double longest_s = 0.5;
     constexpr double guard_s = 0.005;
     const auto samples = [&](double s) { return static_cast<std::size_t>(s * recording.rate_hz); };
-    const std::size_t end = onset - std::min(onset, samples(guard_s));
-    const std::size_t begin = std::max(from, end - std::min(end, samples(longest_s)));
-    return between(recording, std::min(begin, end), end);
+    const auto guarded = [&](std::size_t impact) {
+      return impact - std::min(impact, samples(guard_s));
+    };
+    const std::size_t end = guarded(one.tap.onset);
+    const std::size_t begin =
+        std::min(end, std::max(from, end - std::min(end, samples(longest_s))));
+    one.rest = between(recording, begin, end);
+    const std::size_t after =
+        std::clamp(guarded(next), one.tap.end, one.tap.end + samples(longest_s));
+    const bool is_before =
+        one.rest.duration_s() >= analysis::shortest_stretch_s || end - begin >= after - one.tap.end;
+    one.quiet = is_before ? one.rest : between(recording, one.tap.end, after);
+    one.quiet_s = static_cast<double>(is_before ? begin : one.tap.end) / recording.rate_hz;
   }
 
   // A channel that shows nothing is left out with a remark.

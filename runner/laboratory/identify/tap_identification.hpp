@@ -40,13 +40,16 @@ struct IdentifiedTap {
   std::string file;
   std::string channel;
   analysis::Tap tap;
-  int impact{};               // over all recordings, from 1; the same in all channels
-  double time_s{};            // of the impact
-  double noise_rms{};         // of the recording
-  bool is_clipped{};          // somewhere from the impact on
-  analysis::FreeDecay decay;  // in the recording's unit, about its mean
-  analysis::FreeDecay whole;  // from the impact on
-  analysis::FreeDecay rest;   // before the impact, since the tap before; may be empty
+  int impact{};                   // over all recordings, from 1; the same in all channels
+  double time_s{};                // of the impact
+  double noise_rms{};             // of the recording
+  bool is_clipped{};              // somewhere from the impact on
+  analysis::FreeDecay decay;      // in the recording's unit, about its mean
+  analysis::FreeDecay whole;      // from the impact on
+  analysis::FreeDecay rest;       // before the impact, since the tap before; may be empty
+  analysis::FreeDecay quiet;      // that, or where it is short what follows the decay
+  double quiet_s{};               // when it begins
+  std::vector<double> beside_hz;  // steady tones that are fitted beside its modes
   analysis::TapModes modes;
   std::optional<analysis::FittedSinusoid> sinusoid;  // none of clipped ones
   std::optional<double> speed_m_s;

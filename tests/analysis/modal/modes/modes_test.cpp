@@ -13,6 +13,7 @@
 #include "analysis/modal/modes/model_matching.hpp"
 #include "analysis/modal/modes/one_resonance.hpp"
 #include "analysis/modal/modes/repeated_modes.hpp"
+#include "analysis/modal/modes/steady_tone.hpp"
 #include "core/random/rng.hpp"
 #include "support/catch.hpp"
 #include "support/reference_programs.hpp"
@@ -755,6 +756,79 @@ TEST_CASE("the band holds most of the energy, whatever its peaks do", "[analysis
   const FreeDecay tone = testing::planted_decay({{{700.0, 0.0}, 1.0}}, 8000.0, 0.3);
   const double end_hz = band_end_hz({tone, tone, tone}, 10.0);
   CHECK(energy_outside({tone}, {10.0, end_hz}, 10.0).share < 0.5);
+}
+
+namespace {
+constexpr double humming_hz = 100.04;
+// From when a mode of the same frequency was struck, hum beside it.
+FreeDecay hum_from(double begin_s, double duration_s, double hum, double mode, core::Rng& rng) {
+  FreeDecay decay{4000.0, Eigen::VectorXd(std::lround(4000.0 * duration_s))};
+  for (Eigen::Index n = 0; n < decay.samples.size(); ++n) {
+    const double t_s = begin_s + static_cast<double>(n) / decay.rate_hz;
+    const double omega = 2.0 * std::numbers::pi * humming_hz;
+    decay.samples[n] = hum * std::sin(omega * t_s + 2.0) + 0.002 * rng.normal() +
+                       mode * std::exp(-0.01 * omega * t_s) * std::sin(omega * t_s);
+  }
+  return decay;
+}
+}  // namespace
+
+TEST_CASE("a steady tone is known beside what is left of a mode of its frequency",
+          "[analysis][modal]") {
+  core::Rng rng{7};
+  const FreeDecay stretch = hum_from(0.3, 0.5, 0.15, 1.0, rng);
+  const auto tone = steady_tone(stretch, 99.5, 2.0);
+  REQUIRE(tone);
+  CHECK(std::abs(tone->frequency_hz - humming_hz) < 4.0 * tone->frequency_error_hz);
+  FreeDecay later = hum_from(0.9, 0.3, 0.15, 0.0, rng);
+  take_tone(*tone, 0.6, later);
+  const double left = later.samples.norm() / std::sqrt(static_cast<double>(later.samples.size()));
+  CHECK(left < std::hypot(0.002, 2.0 * tone->error_at(0.75)));
+  CHECK(tone->error_at(0.75) < 0.05 * 0.15);
+}
+
+TEST_CASE("what decays, and noise, is no steady tone", "[analysis][modal]") {
+  core::Rng rng{7};
+  CHECK_FALSE(steady_tone(hum_from(0.1, 0.5, 0.0, 1.0, rng), humming_hz, 2.0));
+  CHECK_FALSE(steady_tone(hum_from(0.1, 0.5, 0.0, 0.0, rng), humming_hz, 2.0));
+  // a mode that would ring through the stretch looks like a tone
+  const FreeDecay hum = hum_from(0.1, 0.5, 0.15, 0.0, rng);
+  CHECK(tone_near(certain_mode(humming_hz, 0.01, 1.0), {{hum, 0.6}}, 2.0));
+  CHECK_FALSE(tone_near(certain_mode(humming_hz, 0.001, 1.0), {{hum, 0.6}}, 2.0));
+}
+
+TEST_CASE("a mode beside a tone that few taps know is known less well", "[analysis][modal]") {
+  core::Rng rng{7};
+  const FreeDecay hum = hum_from(0.1, 0.5, 0.05, 0.0, rng);
+  const QuietStretch none{{4000.0, Eigen::VectorXd::Zero(10)}, 0.1};
+  const RepeatedMode mode = certain_mode(humming_hz, 0.01, 1.0);
+  const auto tones_by = [&](const std::vector<QuietStretch>& stretches) {
+    std::vector<RepeatedMode> modes{mode};
+    tell_of_tones(tones_in(modes, stretches, 0.3), 0.3, modes);
+    return modes.front();
+  };
+  const RepeatedMode known = tones_by({{hum, 0.6}, {hum, 0.6}});
+  CHECK_THAT(known.why, Contains("a steady tone of 100.04 Hz, 26 dB below it"));
+  CHECK(known.damping_ratio.interval.low == Approx(mode.damping_ratio.interval.low).epsilon(0.01));
+  const RepeatedMode half = tones_by({{hum, 0.6}, none});
+  CHECK_THAT(half.why, Contains("fitted beside it in 1 of 2 taps") && Contains("less certain"));
+}
+
+TEST_CASE("the mains' other harmonics tell of one in a mode that no stretch shows",
+          "[analysis][modal]") {
+  std::vector<RepeatedMode> modes{certain_mode(50.02, 1e-5, 0.1), certain_mode(100.3, 0.01, 1.0),
+                                  certain_mode(150.06, 1e-5, 0.1), certain_mode(430.0, 0.002, 1.0)};
+  modes[0].standing = Standing::line;
+  modes[2].standing = Standing::line;
+  const QuietStretch none{{4000.0, Eigen::VectorXd::Zero(10)}, 0.1};
+  const std::vector<ToneOfTaps> tones = tones_in(modes, {none, none}, 0.3);
+  REQUIRE(tones.size() == 1);
+  CHECK(tones[0].frequency_hz == Approx(100.04));
+  core::Rng rng{7};
+  const QuietStretch silent{hum_from(0.1, 0.5, 0.0, 0.0, rng), 0.6};
+  CHECK(tones_in(modes, {silent, none}, 0.3).empty());
+  modes[0].standing = Standing::agreed;  // one line may be any tone
+  CHECK(tones_in(modes, {none, none}, 0.3).empty());
 }
 
 TEST_CASE("poles without some decays are to first order what a fit of the others gives",

@@ -168,6 +168,10 @@ TEST_CASE("a mode's damping does not depend on modes in other parts of the band"
 }
 
 namespace {
+bool contains(const analysis::Estimate& estimate, double value) {
+  return estimate.interval.low <= value && value <= estimate.interval.high;
+}
+
 constexpr double humming_rate_hz = 4000.0;
 
 runner::TapIdentification found_in(const std::string& file, const std::vector<double>& samples) {
@@ -182,7 +186,43 @@ runner::TapIdentification found_in(const std::string& file, const std::vector<do
   runner::Progress progress{"identifying"};
   return runner::identify_taps(question, progress);
 }
+
+// Hum of the mains and its harmonics, of this amplitude at the second; its frequency wanders.
+void add_hum(double amplitude, double wanders_hz, std::vector<double>& samples) {
+  double phase_rad = 0.0;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const double t_s = static_cast<double>(n) / humming_rate_hz;
+    for (int k = 1; k <= 8; ++k) {
+      samples[n] += 2.0 * amplitude / k * std::sin(k * phase_rad + k);
+    }
+    const double hz = 50.02 + wanders_hz * std::sin(2.0 * std::numbers::pi * t_s / 7.0);
+    phase_rad += 2.0 * std::numbers::pi * hz / humming_rate_hz;
+  }
+}
 }  // namespace
+
+// The oracle is what was planted. No decay is long enough to tell such a tone from the mode.
+TEST_CASE("hum within a mode's width is taken out of it, and that is said", "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const auto [mode_hz, hum, wanders_hz] = GENERATE(values<std::tuple<double, double, double>>(
+      {{100.04, 0.15, 0.0}, {100.04, 0.05, 0.0}, {200.0, 0.1, 0.03}, {100.3, 0.1, 0.0}}));
+  std::vector<double> samples =
+      testing::planted_recording({{{mode_hz, 0.01}}, {{415.0, 0.008}, 0.6}},
+                                 {0.5, 1.8, 3.1, 4.4, 5.7, 7.0}, humming_rate_hz, 8.5, 0.002, 3)
+          .samples;
+  add_hum(hum, wanders_hz, samples);
+  const runner::TapIdentification found = found_in(directory / "taps.csv", samples);
+  INFO(mode_hz << " Hz, hum " << hum);
+  REQUIRE(found.agreed.size() == 2);
+  const analysis::RepeatedMode& mode = found.modes[found.agreed[0]];
+  INFO(mode.damping_ratio.interval.low << " to " << mode.damping_ratio.interval.high);
+  CHECK(contains(mode.damping_ratio, 0.01));
+  CHECK(mode.damping_ratio.value == Approx(0.01).epsilon(0.03));
+  CHECK_FALSE(mode.at_tap);
+  CHECK_THAT(mode.why, Contains("a steady tone of"));
+  CHECK_THAT(runner::yaml_of(found), Contains(mode.why));
+  CHECK(found.modes[found.agreed[1]].why.empty());
+}
 
 // The oracle is what was planted, of which the converter's steps hide much.
 TEST_CASE("a fit whose mode grows at a tap is no mode that follows its amplitude",
@@ -233,10 +273,6 @@ runner::TapIdentification identified(const std::string& file, double rate_error)
   question.rate_error = rate_error;
   runner::Progress progress{"identifying"};
   return runner::identify_taps(question, progress);
-}
-
-bool contains(const analysis::Estimate& estimate, double value) {
-  return estimate.interval.low <= value && value <= estimate.interval.high;
 }
 }  // namespace
 

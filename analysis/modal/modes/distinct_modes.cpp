@@ -112,14 +112,17 @@ class Neighbourhood {
     return !best || is_free_decay(*best) ? best : single(1);
   }
 
-  // At a tap, too, a mode loses energy; and what follows its amplitude does so alike in most taps.
-  static bool is_free_decay(const RestingFit& fit) {
+  // At a tap, too, a mode loses energy; what follows its amplitude does so alike in most taps; and
+  // what is at rest is known if it falls by e within a decay.
+  bool is_free_decay(const RestingFit& fit) const {
     if (fit.poles.front().terms == 1) {
       return true;
     }
     const Pole& rest = fit.poles.front().pole;
-    const AtTap at_tap = at_taps(fit);
-    return at_tap.damping_ratio > 0.0 &&
+    const BandSpectrum& first = decays_.front().spectrum;
+    const double fall = 2.0 * std::numbers::pi * rest.frequency_hz * rest.damping_ratio *
+                        static_cast<double>(first.length) / first.rate_hz;
+    return fall >= 1.0 && at_taps(fit).damping_ratio > 0.0 &&
            (most_move_alike(fit, &Pole::frequency_hz, rest.frequency_hz) ||
             most_move_alike(fit, &Pole::damping_ratio, rest.damping_ratio));
   }

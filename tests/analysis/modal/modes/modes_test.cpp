@@ -744,7 +744,7 @@ TEST_CASE("the band holds low modes side by side", "[analysis][modal]") {
 
 TEST_CASE("the band holds what rings on until the next tap cuts it off", "[analysis][modal]") {
   core::Rng rng{7};
-  FreeDecay decay = testing::planted_decay({{{200.0, 0.002}, 1.0}, {{415.0, 0.002}, 0.6}}, 8000.0,
+  FreeDecay decay = testing::planted_decay({{{200.0, 0.0015}, 1.0}, {{415.0, 0.0015}, 0.6}}, 8000.0,
                                            0.237);  // fallen by less than half
   testing::add_noise(decay, 40.0, rng);
   const double end_hz = band_end_hz({decay, decay, decay}, 10.0);

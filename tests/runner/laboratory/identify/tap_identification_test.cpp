@@ -174,7 +174,8 @@ bool contains(const analysis::Estimate& estimate, double value) {
 
 constexpr double humming_rate_hz = 4000.0;
 
-runner::TapIdentification found_in(const std::string& file, const std::vector<double>& samples) {
+runner::TapIdentification found_in(const std::string& file, const std::vector<double>& samples,
+                                   double rate_hz = humming_rate_hz) {
   std::string text = "live\n";
   for (const double sample : samples) {
     text += fmt::format("{:.7g}\n", sample);
@@ -182,7 +183,7 @@ runner::TapIdentification found_in(const std::string& file, const std::vector<do
   testing::write(file, text);
   runner::TapQuestion question;
   question.recordings = {file};
-  question.reading.rate_hz = humming_rate_hz;
+  question.reading.rate_hz = rate_hz;
   runner::Progress progress{"identifying"};
   return runner::identify_taps(question, progress);
 }
@@ -224,21 +225,26 @@ TEST_CASE("hum within a mode's width is taken out of it, and that is said", "[ru
   CHECK(found.modes[found.agreed[1]].why.empty());
 }
 
-// The oracle is what was planted, of which the converter's steps hide much.
-TEST_CASE("a fit whose mode grows at a tap is no mode that follows its amplitude",
+// What was planted is linear; the converter's steps hide much of it.
+TEST_CASE("a mode that would grow at a tap, or hardly fall at rest, follows no amplitude",
           "[runner][identify]") {
   const testing::TempDirectory directory;
+  const double rate_hz = GENERATE(4000.0, 8000.0);
   std::vector<double> samples =
       testing::planted_recording({{{200.0, 0.01}}, {{415.0, 0.008}, 0.6}, {{1100.0, 0.005}, 0.4}},
-                                 {0.5, 1.8, 3.1, 4.4, 5.7, 7.0}, humming_rate_hz, 8.5, 0.002, 4)
+                                 {0.5, 1.8, 3.1, 4.4, 5.7, 7.0}, rate_hz, 8.5, 0.0, 4)
           .samples;
+  std::uint64_t state = 1;
   for (double& sample : samples) {
-    sample = std::round(12.7 * sample);
+    state = (1103515245 * state + 12345) % 2147483648;
+    sample =
+        std::round(12.7 * (sample + 0.004 * static_cast<double>(state) / 2147483648.0 - 0.002));
   }
-  const runner::TapIdentification found = found_in(directory / "taps.csv", samples);
+  const runner::TapIdentification found = found_in(directory / "taps.csv", samples, rate_hz);
+  CHECK_FALSE(found.agreed.empty());
   for (const std::size_t i : found.agreed) {
     INFO(found.modes[i].frequency_hz.value << " Hz");
-    CHECK((!found.modes[i].at_tap || found.modes[i].at_tap->damping_ratio > 0.0));
+    CHECK_FALSE(found.modes[i].at_tap);
   }
 }
 

@@ -205,8 +205,11 @@ Eigen::Isometry3d read_pose(MapReader& reader) {
 
 core::InvalidInput with_cure(const SurfaceFault& fault, const core::TriangleSurface& surface,
                              const std::string& file, double metres_per_unit) {
-  return core::InvalidInput{
-      fmt::format("{}; {}", fault.what(), cures(surface, file, metres_per_unit))};
+  const auto* const pieces = dynamic_cast<const SeveralPieces*>(&fault);
+  return pieces != nullptr && pieces->have_cavity
+             ? core::InvalidInput{fault.what()}
+             : core::InvalidInput{
+                   fmt::format("{}; {}", fault.what(), cures(surface, file, metres_per_unit))};
 }
 
 // Of a surface that passes; else a fault with the command that should cure it.

@@ -140,13 +140,15 @@ void check_one_piece(const TriangleSurface& surface, const Mesh& mesh) {
     return;
   }
   const auto other = std::ranges::find_if(piece, [](std::size_t number) { return number != 0; });
-  throw SeveralPieces{fmt::format(
-      "surface: it is in several pieces, one at {}, another at {} (a body is one closed shell{})",
-      place(surface, surface.triangles(0, 0)),
-      place(surface, surface.triangles(other - piece.begin(), 0)),
-      has_nested_pieces(mesh)
-          ? "; a piece within another is a cavity, which a body here cannot have"
-          : "")};
+  const bool have_cavity = has_nested_pieces(mesh);
+  throw SeveralPieces{
+      fmt::format(
+          "surface: it is in several pieces, one at {}, another at {} (a body is one closed "
+          "shell{})",
+          place(surface, surface.triangles(0, 0)),
+          place(surface, surface.triangles(other - piece.begin(), 0)),
+          have_cavity ? "; a piece within another is a cavity, which a body here cannot have" : ""),
+      have_cavity};
 }
 
 void check_volume(const TriangleSurface& surface, const Mesh& mesh) {

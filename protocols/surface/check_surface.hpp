@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "core/error.hpp"
 #include "core/geometry/triangle_surface.hpp"
 #include "core/model/shape/shape.hpp"
@@ -10,7 +12,9 @@ class SurfaceFault : public core::InvalidInput {
 };
 class SeveralPieces : public SurfaceFault {
  public:
-  using SurfaceFault::SurfaceFault;
+  SeveralPieces(const std::string& what, bool are_nested)
+      : SurfaceFault{what}, have_cavity{are_nested} {}
+  bool have_cavity{};  // which every repair would fill
 };
 
 // As many as are modelled; repair_surface takes more, to make fewer of them.

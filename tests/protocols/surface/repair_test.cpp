@@ -379,6 +379,24 @@ std::string open_tetrahedron() {
   return testing::replaced(testing::replaced(whole_tetrahedron(), "4 4 0", "4 3 0"), "3 0 2 1\n",
                            "");
 }
+// With a small one within it.
+std::string hollow_tetrahedron() {
+  const core::TriangleSurface outer =
+      protocols::read_surface(protocols::surface_source("outer.off", whole_tetrahedron()), 1.0)
+          .surface;
+  core::TriangleSurface inner = outer;
+  const Eigen::RowVector3d centre = outer.points_m.colwise().mean();
+  inner.points_m = (0.2 * (outer.points_m.rowwise() - centre)).rowwise() + centre;
+  const core::TriangleSurface both = testing::joined_surfaces(outer, inner);
+  std::string text = fmt::format("OFF\n{} {} 0\n", both.points_m.rows(), both.triangles.rows());
+  for (const auto& p : both.points_m.rowwise()) {
+    text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+  }
+  for (const auto& t : both.triangles.rowwise()) {
+    text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
+  }
+  return text;
+}
 protocols::Protocol protocol_with(const std::string& repair, const std::string& surface) {
   const std::string file = testing::source("tests/data/every_key.yaml");
   std::string text = testing::contents(file);
@@ -406,6 +424,8 @@ std::string refusal_with(const std::string& repair, const std::string& surface) 
 
 TEST_CASE("a surface is repaired where its protocol asks for that, and nowhere else",
           "[protocols][surface][repair]") {
+  CHECK_THAT(refusal_with("offset_m: [0, 0, 0]", hollow_tetrahedron()),
+             Contains("is a cavity") && !Contains("try:"));  // every repair would fill it
   CHECK_THAT(
       refusal_with("offset_m: [0, 0, 0]", open_tetrahedron()),
       Contains("surface.file") && Contains("try: tapstudy repair") &&

@@ -119,8 +119,11 @@ Mesh mesh_of(const TriangleSurface& surface) {
   return mesh;
 }
 
-// Of closed pieces.
+// Open ones enclose nothing.
 bool has_nested_pieces(const Mesh& mesh) {
+  if (!CGAL::is_closed(mesh)) {
+    return false;
+  }
   std::vector<std::size_t> volume(mesh.number_of_faces());
   const auto volume_of =
       boost::make_iterator_property_map(volume.begin(), get(boost::face_index, mesh));

@@ -364,6 +364,10 @@ std::string force_told_late(BridgedDevice& row) {
     for (int tick = 0; tick < enough_ticks && found == TickFault::none; ++tick) {
       const int before = row.numbering()->samples();
       found = press(pressed.hand, force_at(tick), dt_s);
+      // a bridge that gets no processor would fall behind by as many ticks as go on without it
+      while (found == TickFault::none && std::abs(row.exerted_n() - force_at(tick)) > 1e-3) {
+        found = press(pressed.hand, force_at(tick));
+      }
       wait_until([&] { return row.numbering()->samples() > before; });
     }
   }

@@ -33,10 +33,9 @@ std::string table_text(std::istream& text, const std::string& file);
 // any, or by spaces where it has nothing but quoted names, as R's write.table has it: cells in
 // double quotes may hold separators, quotes and line ends; spaces around other cells do not count;
 // empty lines and a byte order mark are skipped. Between tabulators a quote that does not begin a
-// cell is a character. Throws InvalidInput with file:line for a quote
-// that is out of place or left open, for what is no UTF-8 text, and for a file beyond 64 MB. An
-// apostrophe that guards a cell from being run as a formula is no part of it
-// (core/text/spreadsheet_cell.hpp).
+// cell is a character. Throws InvalidInput with file:line for a quote that is out of place or left
+// open, for what is no UTF-8 text, and for a file beyond 64 MB. An apostrophe that guards a cell
+// from being run as a formula is no part of it (core/text/spreadsheet_cell.hpp).
 CsvText read_csv(std::istream& text, const std::string& file);
 
 // A cell as a file has it: in quotes if it needs them, guarded if a spreadsheet would run it.

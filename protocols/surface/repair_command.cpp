@@ -45,11 +45,6 @@ bool is_body_without_small_pieces(const core::TriangleSurface& surface) {
   }
 }
 
-// Asks for holes to be filled up to this one; empty: they are, unasked.
-std::string filling(const RepairTerms& terms, const std::optional<double>& hole_m) {
-  return hole_m ? fmt::format("{}{}{:.3g}", terms.longest_hole, terms.before_number, 1.01 * *hole_m)
-                : std::string{};
-}
 }  // namespace
 
 std::string cures(const core::TriangleSurface& surface, const std::string& file,
@@ -63,8 +58,8 @@ std::string cures(const core::TriangleSurface& surface, const std::string& file,
       surface.triangles.rows() <= most_triangles ? most_triangles : advised_triangles;
   const auto hole_m =
       surface.triangles.rows() <= max_triangles ? unfilled_hole_m(surface) : std::nullopt;
-  const std::string by_option = filling(option_terms, hole_m);
-  const std::string by_key = filling(key_terms, hole_m);
+  const std::string by_option = hole_m ? filling(option_terms, *hole_m) : "";
+  const std::string by_key = hole_m ? filling(key_terms, *hole_m) : "";
   return fmt::format(
       "try: {}{}; or in the study, beside the file: repair: {{{}{}{}{}{:.2g}, {}, {}: {}}}",
       command(file, metres_per_unit, by_wrap(surface, by_option + (hole_m ? " " : ""), triangles)),

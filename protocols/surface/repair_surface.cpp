@@ -155,8 +155,7 @@ bool is_closed(const TriangleSurface& surface) {
   const RepairTerms& terms = *request.terms;
   std::string advice;
   if (repair.holes.longest_m > hole_m) {
-    advice = fmt::format("{}{}{:.3g} fills its longest hole, or ", terms.longest_hole,
-                         terms.before_number, 1.01 * repair.holes.longest_m);
+    advice = filling(terms, repair.holes.longest_m) + " fills its longest hole, or ";
   }
   if (refusal.is_of_pieces) {
     advice += fmt::format("{} keeps one, or ", terms.largest_piece);
@@ -350,11 +349,10 @@ std::vector<std::string> describe_changes(const SurfaceRepair& repair,
   if (repair.entered) {
     lines.push_back(fmt::format(
         "warning: the wrap goes inside by a hole {:.4g} m round, larger than the {:.3g} m that it "
-        "bridges: with its holes filled the surface encloses {:.4g} m³ ({}{}{:.3g} fills them; a "
+        "bridges: with its holes filled the surface encloses {:.4g} m³ ({} fills them; a "
         "wrap is right for an open sheet)",
         repair.entered->around_m, request.wrap_m.value(), repair.entered->filled_m3,
-        request.terms->longest_hole, request.terms->before_number,
-        1.01 * repair.entered->around_m));
+        filling(*request.terms, repair.entered->around_m)));
   }
   lines.push_back(fmt::format("triangles: {} kept, {} turned, {} dropped, {} added", repair.kept,
                               repair.turned, repair.dropped, repair.added));
@@ -387,6 +385,10 @@ std::optional<double> unfilled_hole_m(const TriangleSurface& surface) {
   } catch (const core::ModelError&) {
     return std::nullopt;
   }
+}
+
+std::string filling(const RepairTerms& terms, double around_m) {
+  return fmt::format("{}{}{:.3g}", terms.longest_hole, terms.before_number, 1.01 * around_m);
 }
 
 double advised_wrap_m(const TriangleSurface& surface) {

@@ -15,6 +15,8 @@ struct RepairTerms {
   const char* max_triangles;
   const char* without_result;  // what a refusal adds
 };
+// Asks for a hole to be filled that is so long round its border.
+std::string filling(const RepairTerms& terms, double around_m);
 // Of `tapstudy repair`.
 inline constexpr RepairTerms option_terms{
     "--largest-hole", "--wrap", " ", "--largest-piece", "--max-triangles", "; nothing is written"};

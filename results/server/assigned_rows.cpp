@@ -33,11 +33,11 @@ SELECT protocol_sha256 FROM tapstudy.assigned_row WHERE title = $2 AND protocol_
 LIMIT 1
 )sql";
 constexpr const char* namesake_sql = R"sql(
-SELECT site, participant_id FROM tapstudy.assigned_row
-  WHERE protocol_sha256 = $1 AND lower(participant_id) = lower($3)
-    AND (site <> $2 OR participant_id <> $3)
-UNION ALL
-SELECT site, participant_id FROM tapstudy.participant JOIN tapstudy.store USING (store_id)
+SELECT site, participant_id FROM (
+  SELECT protocol_sha256, site, participant_id FROM tapstudy.assigned_row
+  UNION ALL
+  SELECT protocol_sha256, site, participant_id
+    FROM tapstudy.participant JOIN tapstudy.store USING (store_id)) AS all_named
   WHERE protocol_sha256 = $1 AND lower(participant_id) = lower($3)
     AND (site <> $2 OR participant_id <> $3)
 LIMIT 1

@@ -67,11 +67,15 @@ class Store {
     std::function<bool(const std::string& participant_id)> is_in_session;
     std::function<bool(const std::string& participant_id)> has_trials_left;
   };
+  // Order indices of a mode, each with a participant who uses it up, but for this one. Those who
+  // were excluded, whose session the operator ended with trials left, or who are no longer in a
+  // session and answered nothing that counts, use none up.
+  std::map<int, std::string> orders_used_beside(const std::string& participant_id, Mode mode,
+                                                const OtherParticipants& others);
   // The place of an existing participant, or the next free one of the mode. The order is the first
-  // that no other participant of the mode has: those who were excluded, whose session the operator
-  // ended with trials left, or who are no longer in a session and answered nothing that counts, use
-  // none up. Where `may_have` is given, the first of those orders that may be had. Throws
-  // InvalidInput if the participant is there already in another mode.
+  // that no other participant of the mode uses up. Where `may_have` is given, the first of those
+  // orders that may be had. Throws InvalidInput if the participant is there already in another
+  // mode.
   Place place_of(const std::string& participant_id, Mode mode, const OtherParticipants& others,
                  const std::function<bool(int order_index)>& may_have = {});
   // Whether any participant is in a group.
@@ -154,8 +158,6 @@ class Store {
                        const std::function<void(JournalEntries&)>& insert);
   void check_has_not_moved();
   int next_participant_index(Mode mode);
-  int free_order_index(Mode mode, const OtherParticipants& others,
-                       const std::function<bool(int order_index)>& may_have);
   std::vector<AlternativeRow> alternatives_of(std::int64_t trial_id);
   AlternativesOfTrials alternatives_where(const char* condition,
                                           std::optional<std::int64_t> trial_id);

@@ -30,7 +30,12 @@ Store::Place Store::place_of(const std::string& participant_id, Mode mode,
       "SELECT participant_index, order_index, mode FROM participant WHERE participant_id = ?"};
   row.bind(participant_id);
   if (!row.step()) {
-    return {next_participant_index(mode), free_order_index(mode, others, may_have)};
+    const std::map<int, std::string> used = orders_used_beside(participant_id, mode, others);
+    int free = 0;
+    while (used.contains(free) || (may_have && !may_have(free))) {
+      ++free;
+    }
+    return {next_participant_index(mode), free};
   }
   if (row.text(2) != to_text(mode)) {
     throw core::InvalidInput{
@@ -49,32 +54,28 @@ int Store::next_participant_index(Mode mode) {
 
 // Used by who has answered what counts, unless the operator ended their last session before its
 // end.
-int Store::free_order_index(Mode mode, const OtherParticipants& others,
-                            const std::function<bool(int order_index)>& may_have) {
+std::map<int, std::string> Store::orders_used_beside(const std::string& participant_id, Mode mode,
+                                                     const OtherParticipants& others) {
   const std::map<std::string, std::string> excluded = excluded_participants();
   Statement row{database_,
                 "SELECT participant_id, order_index, participant_id IN "
                 "  (SELECT participant_id FROM trial JOIN session USING (session_id) "
                 "   WHERE status = 'answered' AND NOT is_practice), participant_id IN ("s +
-                    ended_by_operator + ") FROM participant WHERE mode = ?"};
-  row.bind(to_text(mode));
-  std::set<int> used;
+                    ended_by_operator +
+                    ") FROM participant WHERE mode = ? AND participant_id <> ?"};
+  row.bind(to_text(mode)).bind(participant_id);
+  std::map<int, std::string> used;
   while (row.step()) {
-    const std::string participant_id = row.text(0);
+    const std::string other = row.text(0);
     const bool has_answered = row.flag(2);
     const bool was_ended = row.flag(3);
-    const bool keeps_order =
-        (has_answered && !(was_ended && others.has_trials_left(participant_id))) ||
-        others.is_in_session(participant_id);
-    if (keeps_order && !excluded.contains(participant_id)) {
-      used.insert(row.small_integer(1));
+    const bool keeps_order = (has_answered && !(was_ended && others.has_trials_left(other))) ||
+                             others.is_in_session(other);
+    if (keeps_order && !excluded.contains(other)) {
+      used.emplace(row.small_integer(1), other);
     }
   }
-  int free = 0;
-  while (used.contains(free) || (may_have && !may_have(free))) {
-    ++free;
-  }
-  return free;
+  return used;
 }
 
 // Once they are committed: what is rolled back must not be in the journal.

@@ -367,10 +367,8 @@ std::string warning_of_errors(const std::string& stimulus, const core::Frequency
   }
   return lines + fmt::format(
                      "  warning: {}: {} (mesh: order 2, of thin walls 3, a smaller "
-                     "max_tet_volume_m3 or less "
-                     "flattening, of shell elements a smaller shell_width_m; accuracy: 0.02 "
-                     "refines until they "
-                     "hold still)\n",
+                     "max_tet_volume_m3 or less flattening, of shell elements a smaller "
+                     "shell_width_m; accuracy: 0.02 refines until they hold still)\n",
                      stimulus, describe_errors(errors));
 }
 }  // namespace tapstudy::runner

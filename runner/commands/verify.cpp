@@ -205,6 +205,7 @@ std::string directory_of_report(const std::string& study) {
   std::error_code ignored;
   return fs::exists(folder / "report.json", ignored) ? folder.string() : study;
 }
+
 bool is_fitted(const MixedModelRow& row) {
   return row.estimate || row.p;
 }

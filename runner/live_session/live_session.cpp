@@ -85,8 +85,8 @@ std::optional<results::SessionRow> earlier_session(const SessionRequest& request
   if (alike) {
     throw core::InvalidInput{
         fmt::format("participant '{}': this study has a '{}', which reads alike: if it is the same "
-                    "person, take "
-                    "that id, else one that differs by more than letter case and zeros of numbers",
+                    "person, take that id, else one that differs by more than letter case and "
+                    "zeros of numbers",
                     request.participant_id, *alike)};
   }
   return earlier;
@@ -238,23 +238,14 @@ bool has_balanced_orders(const protocols::Protocol& protocol) {
          std::ranges::any_of(protocol.blocks, is_balanced);
 }
 
-// Orders are balanced where each is used once, which --row can change, and who goes on after others
-// began.
-void tell_who_has_order(const results::SessionRow& session, const protocols::Protocol& protocol,
-                        results::Store& store) {
-  if (!has_balanced_orders(protocol)) {
-    return;
-  }
-  const std::map<std::string, std::string> excluded = store.excluded_participants();
-  for (const results::SessionRow& other : store.sessions()) {
-    if (other.participant_id != session.participant_id && other.mode == session.mode &&
-        other.order_index == session.order_index && !excluded.contains(other.participant_id)) {
-      warn(
-          fmt::format("--row: row {} is participant {}'s, too; orders are balanced only where each "
-                      "is used once",
-                      session.order_index + 1, other.participant_id));
-      return;
-    }
+// Orders are balanced where each is used once: --row can give one again, and who goes on may find
+// theirs dealt to somebody who came between.
+void tell_who_has_order(int order_index, const std::map<int, std::string>& used) {
+  if (const auto other = used.find(order_index); other != used.end()) {
+    warn(
+        fmt::format("row {} of the balanced orders, which this participant has, is {}'s, too: they "
+                    "are balanced only where each is used once",
+                    order_index + 1, other->second));
   }
 }
 
@@ -282,11 +273,11 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
       check_keeps_order(request, *earlier);
     }
     const protocols::Group* const asked = asked_group(request, protocol);
-    const auto place = store.place_of(
-        plan.participant_id, plan.mode,
-        {[&](const std::string& id) { return is_in_session(store.directory(), id); },
-         [&](const std::string& id) { return !trials_done(protocol, id, store).are_all(); }},
-        orders_of(protocol, asked));
+    const results::Store::OtherParticipants others{
+        [&](const std::string& id) { return is_in_session(store.directory(), id); },
+        [&](const std::string& id) { return !trials_done(protocol, id, store).are_all(); }};
+    const auto place =
+        store.place_of(plan.participant_id, plan.mode, others, orders_of(protocol, asked));
     plan.participant_index = place.participant_index;
     plan.order_index =
         earlier ? place.order_index : request.order_index.value_or(place.order_index);
@@ -300,7 +291,10 @@ BegunSession begin_session(const SessionRequest& request, const protocols::Proto
       resume(*earlier, protocol, store, session);
     }
     take_up_session(request, protocol, earlier, store, session);
-    tell_who_has_order(session.row, protocol, store);
+    if (has_balanced_orders(protocol)) {
+      tell_who_has_order(plan.order_index,
+                         store.orders_used_beside(plan.participant_id, plan.mode, others));
+    }
     store.add_session(session.row);
   });
   add_note(session, store);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "support/blocks.hpp"
 #include "support/built_paths.hpp"
 #include "support/catch.hpp"
 #include "support/example_bridge.hpp"
@@ -155,6 +156,27 @@ TEST_CASE("without a participant's device a session is a rehearsal, and the repo
   const auto report = testing::tapstudy({"report", directory / "the_study"});
   CHECK(report.exit_code == 0);
   CHECK_THAT(report.standard_output, Contains("PILOT sessions"));
+}
+
+TEST_CASE("whose row of the balanced orders somebody has, too, is told; one that is free is not",
+          "[end_to_end][threads]") {
+  const TempDirectory directory;
+  testing::write(directory / "study.yaml", testing::text_with_blocks({"test"}, ""));
+  const auto said = [&](const std::string& who, const std::string& answers,
+                        const std::vector<std::string>& more = {}) {
+    std::vector<std::string> line{"run",   directory / "study.yaml", "--participant", who,
+                                  "--out", directory / "the_study"};
+    line.insert(line.end(), more.begin(), more.end());
+    return testing::tapstudy(line, answers).standard_error;
+  };
+  said("P01", "");  // answers nothing, and leaves the order to the next
+  CHECK_THAT(said("P02", "1\n"), !Contains("of the balanced orders"));
+  CHECK(sql(directory, "SELECT group_concat(order_index) FROM participant") == "0,0\n");
+  const std::string told =
+      "row 1 of the balanced orders, which this participant has, is P02's, too";
+  CHECK_THAT(said("P03", "1\n", {"--row", "1"}), Contains(told));
+  CHECK_THAT(said("P01", "1\n", {"--resume"}), Contains(told));
+  CHECK_THAT(said("P04", "1\n"), !Contains("of the balanced orders"));
 }
 
 TEST_CASE("Ctrl-C in a session keeps what was answered and says how to go on",

@@ -80,12 +80,13 @@ std::optional<SteadyTone> steady_tone(const FreeDecay& stretch, double near_hz, 
     return std::nullopt;
   }
   const Band near = band_near(stretch, near_hz, reach_hz);
+  const FreeDecay centred = about_mean(stretch);
   std::optional<SteadyTone> strongest;
   try {
-    if (!stands_out(about_mean(stretch), near, near_hz, reach_hz)) {
+    if (!stands_out(centred, near, near_hz, reach_hz)) {
       return std::nullopt;
     }
-    for (const TapMode& mode : identify_modes(about_mean(stretch), near).modes) {
+    for (const TapMode& mode : identify_modes(centred, near).modes) {
       const FittedMode& fitted = mode.fitted;
       if (std::abs(fitted.pole.frequency_hz - near_hz) <= reach_hz &&
           is_known_steady(fitted, stretch.duration_s()) &&

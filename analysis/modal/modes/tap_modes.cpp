@@ -90,8 +90,7 @@ bool is_near(double frequency_hz, double line_hz) {
 bool is_at_line(const Pole& pole, double duration_s, const std::vector<double>& lines_hz) {
   const double fall = 2.0 * std::numbers::pi * pole.frequency_hz * pole.damping_ratio * duration_s;
   return std::abs(pole.damping_ratio) < same_line && fall < plain_fall &&
-         std::ranges::any_of(lines_hz,
-                             [&](double line_hz) { return is_near(pole.frequency_hz, line_hz); });
+         is_among_lines(pole.frequency_hz, lines_hz);
 }
 
 std::vector<Pole> poles_of(const std::vector<Candidate>& candidates) {

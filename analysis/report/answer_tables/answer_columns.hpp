@@ -4,6 +4,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "analysis/statistics/csv_rows.hpp"
 namespace tapstudy::analysis {
 // Which columns of a table of answers hold what. Empty: those of the table's format.
 struct AnswerColumns {
@@ -35,6 +37,7 @@ struct PlacedCondition {
   std::size_t place{};
   std::string value;
   bool is_excluded{false};
+  bool is_met_by(const CsvRow& row) const { return (row.cells[place] == value) != is_excluded; }
 };
 
 // Their places in a row, from 0.

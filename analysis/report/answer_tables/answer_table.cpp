@@ -138,9 +138,8 @@ class AnswerReader {
  private:
   using Conditions = std::vector<PlacedCondition>;
   static bool meets(const Conditions& conditions, const CsvRow& row) {
-    return std::ranges::all_of(conditions, [&](const PlacedCondition& condition) {
-      return (row.cells[condition.place] == condition.value) != condition.is_excluded;
-    });
+    return std::ranges::all_of(
+        conditions, [&](const PlacedCondition& condition) { return condition.is_met_by(row); });
   }
   // Columns that tell runs of one participant apart by their names, or have dates, but for what
   // changes from row to row.
@@ -475,6 +474,7 @@ struct ReadRows {
   std::vector<Origin> origins;
   std::vector<OtherColumns> columns;  // of each file
 };
+
 // Where no row meets all conditions.
 std::string why_none_is_chosen(const std::vector<NamedCsv>& files,
                                const std::vector<RowCondition>& conditions) {
@@ -485,10 +485,10 @@ std::string why_none_is_chosen(const std::vector<NamedCsv>& files,
     const bool is_met = std::ranges::any_of(files, [&](const NamedCsv& csv) {
       const std::vector<std::string>& header = csv.text.rows.front().cells;
       const auto place = std::ranges::find(header, condition.column) - header.begin();
-      return std::ranges::any_of(std::span{csv.text.rows}.subspan(1), [&](const CsvRow& row) {
-        return (row.cells[static_cast<std::size_t>(place)] == condition.value) !=
-               condition.is_excluded;
-      });
+      const PlacedCondition placed{static_cast<std::size_t>(place), condition.value,
+                                   condition.is_excluded};
+      return std::ranges::any_of(std::span{csv.text.rows}.subspan(1),
+                                 [&](const CsvRow& row) { return placed.is_met_by(row); });
     });
     if (!is_met) {
       return ": no row meets " + named.back();

@@ -378,11 +378,15 @@ std::vector<analysis::RepeatedMode> modes_beside(const std::vector<analysis::Ton
   return modes;
 }
 
+// After its quiet stretch does.
+double decay_begins_s(const IdentifiedTap& tap) {
+  return static_cast<double>(tap.tap.begin) / tap.decay.rate_hz - tap.quiet_s;
+}
+
 std::vector<analysis::QuietStretch> stretches_of(const std::vector<IdentifiedTap>& taps) {
   std::vector<analysis::QuietStretch> stretches;
   for (const IdentifiedTap& tap : taps) {
-    const double begins_s = static_cast<double>(tap.tap.begin) / tap.decay.rate_hz;
-    stretches.push_back({tap.quiet, begins_s - tap.quiet_s});
+    stretches.push_back({tap.quiet, decay_begins_s(tap)});
   }
   return stretches;
 }
@@ -393,8 +397,7 @@ void take_out(const std::vector<analysis::ToneOfTaps>& tones, std::vector<Identi
     for (std::size_t i = 0; i < taps.size(); ++i) {
       IdentifiedTap& tap = taps[i];
       if (const auto& of_tap = tone.of_taps[i]) {
-        const double begins_s = static_cast<double>(tap.tap.begin) / tap.decay.rate_hz;
-        analysis::take_tone(*of_tap, begins_s - tap.quiet_s, tap.decay);
+        analysis::take_tone(*of_tap, decay_begins_s(tap), tap.decay);
         analysis::take_tone(*of_tap, tap.time_s - tap.quiet_s, tap.whole);
       } else {
         tap.beside_hz.push_back(tone.frequency_hz);

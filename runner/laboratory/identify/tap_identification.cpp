@@ -338,8 +338,7 @@ class Identifier {
     if (!result_.sinusoid) {
       result_.remarks.push_back(
           fmt::format("no tap that was struck once and is not clipped is mostly one decaying "
-                      "sinusoid (it would "
-                      "have to explain {:.0f} % of its energy)",
+                      "sinusoid (it would have to explain {:.0f} % of its energy)",
                       100.0 * min_explained_by_sinusoid));
     }
     if (protocol_) {

@@ -151,7 +151,13 @@ class SerialBoard final : public bridge::Device {
     newest_.status = taken<std::uint16_t>(frame, 46);
     newest_.orientation.fill(std::nan(""));
     newest_.exerted_n_m.fill(std::nan(""));
+    // No newer than the first frame that the board had not heard: of one that is on its way still
+    // it tells nothing.
+    const std::uint8_t heard = frame[3];
     taken_at_ = bridge::Clock::now();
+    if (heard != number_) {
+      taken_at_ = std::min(taken_at_, sent_at_[static_cast<std::uint8_t>(heard + 1)]);
+    }
   }
   void take_introduction(const std::uint8_t* frame) {
     told_.measured_axes = frame[4];
@@ -169,7 +175,8 @@ class SerialBoard final : public bridge::Device {
 
   int port_;
   bool is_gone_ = false;
-  std::uint8_t number_ = 0;
+  std::uint8_t number_ = 0;                               // of the last frame
+  std::array<bridge::Clock::time_point, 256> sent_at_{};  // by its number
   std::vector<std::uint8_t> received_;
   bridge::wire::Introduction told_;
   bridge::wire::Reply newest_;

@@ -235,9 +235,10 @@ class Server {
         std::ranges::all_of(reply.position_m, [](double m) { return std::isfinite(m); });
     if (!is_placed || !(reply.age_s <= max_sample_age_s)) {
       reply.status &= ~wire::motors_on;
-      put_text(reply.text, reply.text[0] != '\0' ? reply.text.data()
-                           : is_placed           ? "no samples from the device"
-                                                 : "the device tells no position");
+      if (reply.text[0] == '\0') {
+        put_text(reply.text,
+                 is_placed ? "no samples from the device" : "the device tells no position");
+      }
     }
     is_usable_ = (reply.status & wire::motors_on) != 0;
     if (!is_usable_) {

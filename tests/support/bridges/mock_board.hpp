@@ -12,6 +12,7 @@
 #include <cstring>
 #include <deque>
 #include <limits>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -61,13 +62,22 @@ class MockBoard {
   void be_noisy() { is_noisy_ = true; }
   void fall_silent() { is_silent_ = true; }
   void lose_position() { is_lost_ = true; }
-  void jump_in_numbers() { sample_ += 1'000'000; }
+  void jump_in_numbers() { stride_ = 1'000'000; }  // with every sample
   void answer_every_other() { answers_every_other_ = true; }
   // Exerts, and tells, what it does now, whatever it is sent.
   void hold() { is_holding_ = true; }
-  int samples() const { return samples_sent_; }
-  // Tells what it exerted so many frames ago.
-  void tell_force_late(std::size_t frames) { told_late_ = frames; }
+  // Tells what it exerted so many milliseconds ago, which pass as the test says.
+  void tell_force_late(std::size_t ms) { told_late_ms_ = ms; }
+  void pass_ms() {
+    const std::lock_guard lock{of_exerted_};
+    exerted_n_.push_front(force_n_);
+    exerted_n_.resize(std::min<std::size_t>(exerted_n_.size(), 100));
+  }
+  float told_force_n() {
+    const std::lock_guard lock{of_exerted_};
+    const std::size_t late_ms = std::min(told_late_ms_.load(), exerted_n_.size());
+    return late_ms == 0 ? force_n_.load() : exerted_n_.at(late_ms - 1);
+  }
   void unplug() {
     if (obeying_.joinable()) {
       is_over_ = true;
@@ -84,6 +94,7 @@ class MockBoard {
   static constexpr Clock::rep max_silence =
       std::chrono::nanoseconds{std::chrono::milliseconds{20}}.count();
   using Bytes = std::vector<std::uint8_t>;
+  static constexpr std::size_t frame_bytes = 18;
   template <class Value>
   static void add(Bytes& frame, Value value) {
     std::array<std::uint8_t, sizeof value> bytes{};
@@ -119,8 +130,8 @@ class MockBoard {
   }
   void send_sample() {
     constexpr float not_measured = std::numeric_limits<float>::quiet_NaN();
-    Bytes content{1, 0};
-    const std::uint32_t sample = ++sample_;
+    Bytes content{1, heard_number_};
+    const std::uint32_t sample = sample_ += stride_;
     add(content, sample);
     const float position_m = is_lost_ ? not_measured : 0.02F;
     const float tremor_m = tremor_m_ * std::sin(0.06F * static_cast<float>(sample));
@@ -132,11 +143,6 @@ class MockBoard {
     add(content, std::uint16_t{1});
     send(content);
   }
-  float told_force_n() {
-    exerted_n_.push_front(force_n_);
-    exerted_n_.resize(std::min<std::size_t>(exerted_n_.size(), 100));
-    return exerted_n_.at(std::min(told_late_.load(), exerted_n_.size() - 1));
-  }
   void obey() {
     Bytes received;
     std::array<std::uint8_t, 256> bytes{};
@@ -146,26 +152,40 @@ class MockBoard {
         return;
       }
       received.insert(received.end(), bytes.begin(), bytes.begin() + count);
-      for (; received.size() >= 18; received.erase(received.begin(), received.begin() + 18)) {
-        const Bytes content{received.begin() + 2, received.begin() + 16};
-        std::uint16_t crc = 0;
-        std::memcpy(&crc, received.data() + 16, sizeof crc);
-        if (crc != remainder_of(content) || is_silent_) {
-          continue;
-        }
-        float force_n = 0.0F;
-        std::memcpy(&force_n, received.data() + 8, sizeof force_n);
-        heard_at_ = Clock::now().time_since_epoch().count();
-        const bool is_force = received[2] == 1;
-        force_n_ = is_force && !is_holding_ ? force_n : force_n_.load();
-        largest_n_ = std::max(largest_n_.load(), force_n_.load());
-        if (!is_force) {
-          introduce();
-        } else if (!answers_every_other_ || ++asked_ % 2 == 0) {
-          send_sample();
-          ++samples_sent_;
-        }
+      take_frames(received);
+    }
+  }
+  // Whatever is no whole frame is skipped, a byte at a time: a port that is full takes a part of
+  // one.
+  void take_frames(Bytes& received) {
+    std::size_t at = 0;
+    while (at + frame_bytes <= received.size()) {
+      const std::uint8_t* const frame = received.data() + at;
+      std::uint16_t crc = 0;
+      std::memcpy(&crc, frame + 16, sizeof crc);
+      if (frame[0] != 0xA5 || frame[1] != 0x5A || crc != remainder_of({frame + 2, frame + 16})) {
+        ++at;
+        continue;
       }
+      if (!is_silent_) {
+        take_frame(frame);
+      }
+      at += frame_bytes;
+    }
+    received.erase(received.begin(), received.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+  void take_frame(const std::uint8_t* frame) {
+    float force_n = 0.0F;
+    std::memcpy(&force_n, frame + 8, sizeof force_n);
+    heard_at_ = Clock::now().time_since_epoch().count();
+    heard_number_ = frame[3];
+    const bool is_force = frame[2] == 1;
+    force_n_ = is_force && !is_holding_ ? force_n : force_n_.load();
+    largest_n_ = std::max(largest_n_.load(), force_n_.load());
+    if (!is_force) {
+      introduce();
+    } else if (!answers_every_other_ || ++asked_ % 2 == 0) {
+      send_sample();
     }
   }
 
@@ -183,10 +203,12 @@ class MockBoard {
   std::atomic<bool> is_holding_{false};
   std::atomic<bool> answers_every_other_{false};
   int asked_{0};
-  std::atomic<int> samples_sent_{0};
-  std::atomic<std::size_t> told_late_{0};
-  std::deque<float> exerted_n_;  // with the last frames, the newest first
-  std::atomic<std::uint32_t> sample_{0};
+  std::uint8_t heard_number_{0};
+  std::atomic<std::size_t> told_late_ms_{0};
+  std::mutex of_exerted_;
+  std::deque<float> exerted_n_;  // in the last milliseconds, the newest first
+  std::uint32_t sample_{0};
+  std::atomic<std::uint32_t> stride_{1};
   std::thread obeying_;
 };
 }  // namespace tapstudy::testing

@@ -112,6 +112,10 @@ ShellElements::Lamina ShellElements::lamina_at(const Point& point, double height
 }
 
 // Without stress across the lamina, C_ijkl - C_ij33 C_33kl / C_3333, and with the share of shear.
+// Where the material's axes leave the lamina, stretching it shears it across, too: that shear is
+// odd in bending, which the director, straight across the sheet, cannot follow. It is free of
+// stress, as the faces are: stiffnesses within the lamina are those of the inverse of its
+// compliances (Lekhnitskii, Anisotropic Plates, 1968).
 Eigen::Matrix<double, 5, 5> ShellElements::elasticity_in(const Eigen::Matrix3d& axes) const {
   constexpr double share_of_shear = 5.0 / 6.0;
   constexpr std::array<Eigen::Index, 5> strains{pair_of(0, 0), pair_of(1, 1), pair_of(0, 1),
@@ -126,10 +130,14 @@ Eigen::Matrix<double, 5, 5> ShellElements::elasticity_in(const Eigen::Matrix3d& 
   }
   Tensor turned = turn * elasticity_pa_ * turn.transpose();
   turned -= (turned.col(across) * turned.row(across) / turned(across, across)).eval();
-  Eigen::Matrix<double, 5, 5> elasticity = turned(strains, strains);
-  elasticity.bottomRows<2>() *= std::sqrt(share_of_shear);
-  elasticity.rightCols<2>() *= std::sqrt(share_of_shear);
-  return elasticity;
+  const Eigen::Matrix<double, 5, 5> elasticity = turned(strains, strains);
+  const Eigen::Matrix2d of_shear = elasticity.bottomRightCorner<2, 2>();
+  const Eigen::Matrix<double, 3, 2> between = elasticity.topRightCorner<3, 2>();
+  Eigen::Matrix<double, 5, 5> result = Eigen::Matrix<double, 5, 5>::Zero();
+  result.topLeftCorner<3, 3>() =
+      elasticity.topLeftCorner<3, 3>() - between * of_shear.inverse() * between.transpose();
+  result.bottomRightCorner<2, 2>() = share_of_shear * of_shear;
+  return result;
 }
 
 ShellElements::Matrices ShellElements::of(const TriangleSurface::Points& places_m,

@@ -13,6 +13,7 @@
 #include "analysis/modal/modes/close_modes.hpp"
 #include "analysis/modal/modes/distinct_modes.hpp"
 #include "analysis/modal/modes/mode_kinds.hpp"
+#include "analysis/modal/modes/neighbourhood_fit.hpp"
 #include "analysis/modal/modes/one_resonance.hpp"
 #include "analysis/modal/modes/steady_tone.hpp"
 #include "analysis/statistics/quantiles.hpp"
@@ -364,6 +365,9 @@ std::vector<analysis::RepeatedMode> modes_beside(const std::vector<analysis::Ton
   std::vector<analysis::RepeatedMode> modes =
       analysis::distinct_modes(decays_of(taps), impacts_of(taps), band, found);
   analysis::join_resonances(decays_of(taps), modes);
+  if (is_one_impact(taps)) {
+    analysis::fit_neighbourhoods(decays_of(taps), band, found.taps, modes);
+  }
   analysis::add_died(ringing.died, modes);
   std::vector<analysis::FreeDecay> rests;
   std::ranges::transform(taps, std::back_inserter(rests), &IdentifiedTap::rest);

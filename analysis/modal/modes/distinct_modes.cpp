@@ -34,20 +34,61 @@ bool may_be_mode(const RepeatedMode& mode) {
   return mode.standing == Standing::agreed || mode.standing == Standing::doubtful;
 }
 
+double bandwidth_hz(const RepeatedMode& mode) {
+  return 2.0 * std::abs(mode.damping_ratio.value) * centre_of(mode);
+}
+
 double reach_of(const RepeatedMode& mode) {
-  const double bandwidth_hz = 2.0 * std::abs(mode.damping_ratio.value) * centre_of(mode);
   return std::min(most_reach * centre_of(mode),
-                  std::max(reach_share * centre_of(mode), reach_bandwidths * bandwidth_hz));
+                  std::max(reach_share * centre_of(mode), reach_bandwidths * bandwidth_hz(mode)));
 }
 
 // In a longer decay a mode is so well known that what its neighbours leave in its surroundings
 // shifts the fit of it alone by more than its interval: there modes stay as the taps show them.
 constexpr double longest_examined_s = 0.3;
 
+// What the tap shows beyond a part of the band, so many samples later.
+TapModes beyond(const Band& part, TapModes tap, double later) {
+  std::erase_if(tap.modes,
+                [&](const TapMode& mode) { return part.holds(mode.fitted.pole.frequency_hz); });
+  for (TapMode& mode : tap.modes) {
+    const std::complex<double> log_z = log_of(mode.fitted.pole, tap.spectrum.rate_hz);
+    mode.fitted.amplitude *= std::exp(log_z.real() * later);
+    mode.fitted.phase_rad += log_z.imag() * later;
+  }
+  return tap;
+}
+
+// How strongly a mode is moved at rest, before the tap: the amplitude of one tone with the power
+// inside its bandwidth. 0 where that is too short to tell.
+double amplitude_at_rest(const RepeatedMode& mode, const FreeDecay& rest) {
+  constexpr double around = 1.5;
+  const Eigen::VectorXd about_mean = (rest.samples.array() - rest.samples.mean()).matrix();
+  const double centre_hz = centre_of(mode);
+  try {
+    const BandSpectrum spectrum =
+        band_spectrum({rest.rate_hz, about_mean},
+                      {centre_hz / around, std::min(0.47 * rest.rate_hz, around * centre_hz)});
+    const double within_hz =
+        std::max(bandwidth_hz(mode), spectrum.rate_hz / static_cast<double>(spectrum.length));
+    const Eigen::ArrayXd hz = spectrum.rate_hz / (2.0 * std::numbers::pi) * spectrum.rad_per_sample;
+    const double power = ((hz - centre_hz).abs() <= within_hz)
+                             .select(spectrum.values.cwiseAbs2().array(), 0.0)
+                             .sum();
+    return 2.0 * std::sqrt(power) / static_cast<double>(spectrum.length);
+  } catch (const core::InvalidInput&) {
+    return 0.0;
+  }
+}
+
 class Neighbourhood {
  public:
+  // The decays begin so much later than those of the taps. What the taps show beyond the
+  // neighbourhood is taken out: in a short decay it would look like a mode here that follows its
+  // amplitude.
   Neighbourhood(const RepeatedMode& strongest, const std::vector<FreeDecay>& decays,
-                const std::vector<int>& impacts, const Band& band, const ModesOfTaps& found)
+                const std::vector<int>& impacts, const Band& band, const ModesOfTaps& found,
+                double later_s = 0.0)
       : strongest_{strongest}, found_{found}, reach_hz_{reach_of(strongest)} {
     const double centre_hz = centre_of(strongest);
     for (std::size_t i = 0; i < decays.size(); ++i) {
@@ -59,7 +100,9 @@ class Neighbourhood {
           std::max(around_reach * reach_hz_, least_bins / 2.0 / decay.duration_s());
       near_ = {std::max(band.low_hz, centre_hz - half_hz),
                std::min(0.47 * decay.rate_hz, centre_hz + half_hz)};
-      decays_.push_back({band_spectrum(decay, near_), lines_in(found.taps[i], near_), impacts[i]});
+      const double later = std::round(later_s * decay.rate_hz);
+      const FreeDecay alone = without_modes(decay, beyond(near_, found.taps[i], later));
+      decays_.push_back({band_spectrum(alone, near_), lines_in(found.taps[i], near_), impacts[i]});
     }
   }
 
@@ -86,10 +129,10 @@ class Neighbourhood {
     return best && is_here(*best) ? best : std::nullopt;
   }
 
-  // The mode that all of it is; unset if it is not one.
-  std::optional<RepeatedMode> one_mode() const {
+  // The mode that all of it is; unset if it is not one. rests: before the taps.
+  std::optional<RepeatedMode> one_mode(const std::vector<FreeDecay>& rests) const {
     const std::vector<RepeatedMode> members = all_held();
-    const std::optional<RestingFit> best = supported_single();
+    const std::optional<RestingFit> best = supported_single(rests);
     if (!best) {
       return std::nullopt;
     }
@@ -104,20 +147,39 @@ class Neighbourhood {
 
  private:
   // What is left of a tone that was taken out looks like a mode that follows its amplitude.
-  std::optional<RestingFit> supported_single() const {
+  std::optional<RestingFit> supported_single(const std::vector<FreeDecay>& rests) const {
     const bool is_beside_tone = std::ranges::any_of(found_.taken_hz, [&](double hz) {
       return std::abs(hz - centre_of(strongest_)) <= reach_hz_;
     });
     std::optional<RestingFit> best = single(is_beside_tone ? 1 : numbers_of_terms.back());
-    return !best || is_free_decay(*best) ? best : single(1);
+    if (!best || best->poles.front().terms == 1) {
+      return best;
+    }
+    const std::optional<RestingFit> linear = single(1);
+    return is_free_decay(*best) && (!linear || exceeds_rest(*linear, *best, rests)) ? best : linear;
+  }
+
+  // What moves the mode at rest goes on after its decay, in which a series would follow it: what a
+  // series explains beyond a linear mode must be more than that.
+  bool exceeds_rest(const RestingFit& linear, const RestingFit& series,
+                    const std::vector<FreeDecay>& rests) const {
+    constexpr double times_rest = 2.0;
+    std::vector<double> at_rest;
+    for (const FreeDecay& rest : rests) {
+      at_rest.push_back(amplitude_at_rest(strongest_, rest));
+    }
+    const BandSpectrum& spectrum = decays_.front().spectrum;
+    const double share_of_band =
+        static_cast<double>(spectrum.values.size()) / static_cast<double>(spectrum.length);
+    const double explained =
+        2.0 * std::sqrt(share_of_band *
+                        std::max(0.0, linear.noise * linear.noise - series.noise * series.noise));
+    return at_rest.empty() || explained > times_rest * quantile(at_rest, 0.5);
   }
 
   // At a tap, too, a mode loses energy; what follows its amplitude does so alike in most taps; and
   // what is at rest is known if it falls by e within a decay.
   bool is_free_decay(const RestingFit& fit) const {
-    if (fit.poles.front().terms == 1) {
-      return true;
-    }
     const Pole& rest = fit.poles.front().pole;
     const BandSpectrum& first = decays_.front().spectrum;
     const double fall = 2.0 * std::numbers::pi * rest.frequency_hz * rest.damping_ratio *
@@ -325,7 +387,8 @@ double settled_for(const RepeatedMode& mode, const std::vector<std::vector<FreeD
       break;  // too little of the mode would be left
     }
     try {
-      const auto fit = Neighbourhood{mode, later[i], impacts, band, found}.single(most_terms);
+      const auto fit =
+          Neighbourhood{mode, later[i], impacts, band, found, delays_s.at(i)}.single(most_terms);
       if (!fit) {
         break;
       }
@@ -365,10 +428,6 @@ double settled_after_s(const std::vector<FreeDecay>& decays, const std::vector<i
 }
 
 namespace {
-double bandwidth_hz(const RepeatedMode& mode) {
-  return 2.0 * std::abs(mode.damping_ratio.value) * centre_of(mode);
-}
-
 bool are_near(const RepeatedMode& one, const RepeatedMode& other) {
   return std::abs(centre_of(one) - centre_of(other)) < bandwidth_hz(one) + bandwidth_hz(other);
 }
@@ -455,7 +514,8 @@ void add_died(const std::vector<RepeatedMode>& died, std::vector<RepeatedMode>& 
 
 std::vector<RepeatedMode> distinct_modes(const std::vector<FreeDecay>& decays,
                                          const std::vector<int>& impacts, const Band& band,
-                                         const ModesOfTaps& found) {
+                                         const ModesOfTaps& found,
+                                         const std::vector<FreeDecay>& rests) {
   ModesOfTaps left = found;
   std::set<double> taken_hz;
   for (const RepeatedMode& strongest : by_strength(found.modes)) {
@@ -464,7 +524,7 @@ std::vector<RepeatedMode> distinct_modes(const std::vector<FreeDecay>& decays,
     }
     try {
       const Neighbourhood near{strongest, decays, impacts, band, left};
-      if (const std::optional<RepeatedMode> one = near.one_mode()) {
+      if (const std::optional<RepeatedMode> one = near.one_mode(rests)) {
         std::erase_if(left.modes, [&](const RepeatedMode& mode) {
           const bool is_part = near.holds(mode);
           if (is_part) {

@@ -8,9 +8,12 @@ namespace tapstudy::analysis {
 // (resting_pole_fit.hpp), over all taps at once, by Schwarz's criterion: if that is no worse, they
 // are one mode, whose estimates are those at rest, with jackknife intervals over impacts.
 // Neighbours stay as they are if all taps together told them apart and the single mode fits worse.
+// rests: what the sensors show before the taps; a dependence on the amplitude that explains no more
+// than what moves the mode there is none.
 std::vector<RepeatedMode> distinct_modes(const std::vector<FreeDecay>& decays,
                                          const std::vector<int>& impacts, const Band& band,
-                                         const ModesOfTaps& found);
+                                         const ModesOfTaps& found,
+                                         const std::vector<FreeDecay>& rests = {});
 
 // How long after these decays begin they are free: 0, or up to 12 ms later, while reflections of
 // the blow arrive or the striker still touches. Each of the six strongest modes, which may follow

@@ -230,6 +230,12 @@ analysis::ModesOfTaps found_in_parts(const analysis::Band& band, std::vector<Ide
   return found;
 }
 
+std::vector<analysis::FreeDecay> rests_of(const std::vector<IdentifiedTap>& taps) {
+  std::vector<analysis::FreeDecay> rests;
+  std::ranges::transform(taps, std::back_inserter(rests), &IdentifiedTap::rest);
+  return rests;
+}
+
 std::vector<int> impacts_of(const std::vector<IdentifiedTap>& taps) {
   std::vector<int> impacts;
   std::ranges::transform(taps, std::back_inserter(impacts), &IdentifiedTap::impact);
@@ -300,8 +306,8 @@ std::vector<analysis::RepeatedMode> died_before(double after_s, const analysis::
                                                 const FoundInTaps& first,
                                                 const analysis::ModesOfTaps& later) {
   const std::vector<analysis::FreeDecay> decays = decays_of(first.taps);
-  std::vector<analysis::RepeatedMode> modes =
-      analysis::distinct_modes(decays, impacts_of(first.taps), band, first.found);
+  std::vector<analysis::RepeatedMode> modes = analysis::distinct_modes(
+      decays, impacts_of(first.taps), band, first.found, rests_of(first.taps));
   analysis::join_resonances(decays, modes);
   return analysis::died_before(after_s, modes, later.modes);
 }
@@ -363,15 +369,13 @@ std::vector<analysis::RepeatedMode> modes_beside(const std::vector<analysis::Ton
   }
   const analysis::ModesOfTaps& found = ringing.free.found;
   std::vector<analysis::RepeatedMode> modes =
-      analysis::distinct_modes(decays_of(taps), impacts_of(taps), band, found);
+      analysis::distinct_modes(decays_of(taps), impacts_of(taps), band, found, rests_of(taps));
   analysis::join_resonances(decays_of(taps), modes);
   if (is_one_impact(taps)) {
     analysis::fit_neighbourhoods(decays_of(taps), band, found.taps, modes);
   }
   analysis::add_died(ringing.died, modes);
-  std::vector<analysis::FreeDecay> rests;
-  std::ranges::transform(taps, std::back_inserter(rests), &IdentifiedTap::rest);
-  analysis::mark_background(rests, modes);
+  analysis::mark_background(rests_of(taps), modes);
   analysis::tell_of_tones(tones, median_duration_s(taps), modes);
   analysis::judge_certainty(median_duration_s(taps), modes);
   if (is_one_impact(taps)) {

@@ -380,7 +380,8 @@ std::vector<RepeatedMode> listed(FaultyTaps taps, const std::vector<FreeDecay>& 
     }
     taps = identified(std::move(later));
   }
-  std::vector<RepeatedMode> modes = distinct_modes(taps.decays, taps.impacts, sought, taps.found);
+  std::vector<RepeatedMode> modes =
+      distinct_modes(taps.decays, taps.impacts, sought, taps.found, rests);
   mark_background(rests, modes);
   judge_certainty(taps.decays.front().duration_s(), modes);
   std::erase_if(modes, [](const RepeatedMode& mode) { return mode.standing != Standing::agreed; });
@@ -997,4 +998,61 @@ TEST_CASE("a strong motion below the band does not falsify the damping of a sing
   CHECK(held >= seen - 2);
   CHECK(error < 0.2 * error_of_band);
   CHECK(error / seen < 0.005);
+}
+
+namespace {
+// Modes that white noise moves, to this standard deviation each.
+FreeDecay at_rest(const std::vector<Pole>& poles, double deviation, double rate_hz,
+                  double duration_s, core::Rng& rng) {
+  constexpr Eigen::Index until_steady = 20'000;
+  FreeDecay rest{rate_hz, Eigen::VectorXd::Zero(std::lround(rate_hz * duration_s))};
+  for (const Pole& pole : poles) {
+    const std::complex<double> z = std::exp(log_of(pole, rate_hz));
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(until_steady + rest.samples.size());
+    for (Eigen::Index n = 2; n < moved.size(); ++n) {
+      moved[n] = 2.0 * z.real() * moved[n - 1] - std::norm(z) * moved[n - 2] + rng.normal();
+    }
+    const double size = moved.norm() / std::sqrt(static_cast<double>(moved.size()));
+    rest.samples += deviation / size * moved.tail(rest.samples.size());
+  }
+  return rest;
+}
+}  // namespace
+
+TEST_CASE(
+    "linear modes follow no amplitude in short decays beside others, nor where they move at "
+    "rest",
+    "[analysis][modal]") {
+  constexpr double rate_hz = 8000.0;
+  std::vector<Pole> poles{{120.0, 0.015}, {300.0, 0.012}};
+  double duration_s = 0.1;
+  double deviation_at_rest = 0.0;
+  SECTION("in short decays") {}
+  SECTION("where they move at rest") {
+    poles = {{200.0, 0.02}, {330.0, 0.015}};
+    duration_s = 0.28;
+    deviation_at_rest = 0.005;
+  }
+  core::Rng rng{11};
+  std::vector<FreeDecay> decays;
+  std::vector<FreeDecay> rests;
+  for (int tap = 0; tap < 4; ++tap) {
+    FreeDecay decay =
+        testing::planted_decay({{poles[0], 1.0}, {poles[1], 0.6}}, rate_hz, duration_s);
+    testing::add_noise(decay, 54.0, rng);
+    const FreeDecay moved = at_rest(poles, deviation_at_rest, rate_hz, duration_s + 0.2, rng);
+    decay.samples += moved.samples.tail(decay.samples.size());
+    decays.push_back(std::move(decay));
+    rests.push_back({rate_hz, moved.samples.head(std::lround(0.2 * rate_hz))});
+  }
+  const std::vector<RepeatedMode> modes = listed(identified(std::move(decays)), rests);
+  for (const Pole& pole : poles) {
+    const auto found = std::ranges::find_if(modes, [&](const RepeatedMode& mode) {
+      return std::abs(mode.frequency_hz.value / pole.frequency_hz - 1.0) < 0.005;
+    });
+    INFO(pole.frequency_hz << " Hz");
+    REQUIRE(found != modes.end());
+    CHECK_FALSE(found->at_tap);
+    CHECK(found->damping_ratio.value == Approx(pole.damping_ratio).epsilon(0.05));
+  }
 }

@@ -2,6 +2,7 @@
 #include "core/model/elements/orthotropy.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -105,6 +106,40 @@ TEST_CASE("a thin spruce plate on simple supports has its theory's frequencies",
   REQUIRE(found.size() == 2);
   CHECK(found[0] == Approx(theory_hz(1, 1)).epsilon(0.02));
   CHECK(found[1] == Approx(theory_hz(1, 2)).epsilon(0.02));
+}
+
+// A strip whose grain leaves its plane by this angle, clamped at one end: 1 / E = cos⁴ / E1 + sin⁴
+// / E3 + sin² cos² (1 / G13 - 2 n13 / E1) (Lekhnitskii, Theory of Elasticity of an Anisotropic
+// Body, 1963), and a beam's bending frequencies by it.
+TEST_CASE("a strip of shells whose grain leaves its plane bends as a beam of that stiffness",
+          "[core][model][material]") {
+  const core::Vec3 size_m{0.2, 0.03, 0.0007};
+  core::Material wood = spruce();
+  const double angle_rad = GENERATE(0.3, 0.9);
+  wood.orthotropy->rotation_rad = {0.0, angle_rad, 0.0};
+  const Orthotropy& given = *wood.orthotropy;
+  const double along = std::pow(std::cos(angle_rad), 2);
+  const double across = std::pow(std::sin(angle_rad), 2);
+  const double compliance =
+      along * along / given.moduli[0] + across * across / given.moduli[2] +
+      along * across *
+          (1.0 / given.shear_moduli[1] - 2.0 * given.poissons_ratios[1] / given.moduli[0]);
+  const double unit_hz =
+      size_m.z() / (size_m.x() * size_m.x()) *
+      std::sqrt(wood.youngs_modulus_pa / compliance / 12.0 / wood.density_kg_per_m3) / (2.0 * M_PI);
+  core::PlateSpec strip{{core::Box{size_m}, {}, {}}, wood, 30.0 * unit_hz};
+  strip.mesh.order = 2;
+  strip.mesh.shell_width_m = 0.01;
+  core::Fixation& held = strip.fixations.emplace_back();
+  held.shape = core::RegionShape::side;
+  held.side = core::Side::left;
+  const auto found_hz = core::build_plate_model(strip).modal.frequency_hz;
+  for (const double root : {1.87510, 4.69409}) {  // of cos x cosh x = -1
+    const double expected_hz = root * root * unit_hz;
+    INFO(expected_hz << " Hz");
+    CHECK(std::ranges::any_of(found_hz,
+                              [&](double hz) { return std::abs(hz / expected_hz - 1.0) < 0.015; }));
+  }
 }
 
 TEST_CASE("a body turned together with its material's axes keeps its frequencies",

@@ -71,8 +71,17 @@ std::optional<FirstNumbers> first_numbers(const std::vector<std::string_view>& l
   return std::nullopt;
 }
 
+bool is_blank(std::string_view line) {
+  return line.find_first_not_of(" \t\r") == std::string_view::npos;
+}
+
 bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with('%');
+}
+
+std::vector<std::string> cells_of_header(std::string_view line, char separator) {
+  line.remove_prefix(is_comment(line) ? 1 : 0);
+  return cells_of(line, separator);
 }
 
 std::string joined_by(char separator, const std::vector<std::string>& cells, std::size_t count) {
@@ -87,18 +96,26 @@ bool is_time(const std::string& name) {
   return seconds_per_unit(name) > 0.0;
 }
 
-// A row of units below the names: "s,m/s^2", "(ms),(g)".
+bool is_in_brackets(const std::string& cell) {
+  return (cell.starts_with('(') && cell.ends_with(')')) ||
+         (cell.starts_with('[') && cell.ends_with(']'));
+}
+
+// A row of units below the names: "s,m/s^2", "(ms),(g)", "[g],[N]".
 bool are_units(const std::vector<std::string>& cells) {
-  return std::ranges::any_of(
-      cells, [](const std::string& cell) { return !cell.empty() && is_time("t " + cell); });
+  const auto is_unit_of_time = [](const std::string& cell) {
+    return cell.find('s') != std::string::npos && is_time("t " + cell);
+  };
+  return std::ranges::any_of(cells, is_unit_of_time) || std::ranges::all_of(cells, is_in_brackets);
 }
 
 // The names, and with that of the time its unit; unset if there are not as many as units.
 std::optional<std::vector<std::string>> names_above(std::string_view line,
                                                     const std::vector<std::string>& units,
                                                     char separator) {
-  std::vector<std::string> names = cells_of(line, separator);
-  if (names.size() != units.size() || is_comment(line) || std::ranges::none_of(names, is_time)) {
+  std::vector<std::string> names = cells_of_header(line, separator);
+  const bool may_lack_time = std::ranges::all_of(units, is_in_brackets);
+  if (names.size() != units.size() || (!may_lack_time && std::ranges::none_of(names, is_time))) {
     return std::nullopt;
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -109,25 +126,45 @@ std::optional<std::vector<std::string>> names_above(std::string_view line,
   return names;
 }
 
-// The header as the rows' cells ask for it; unset if the line above them is none.
-std::optional<std::string> header_above(const std::vector<std::string_view>& lines,
-                                        const FirstNumbers& first) {
-  if (first.line == 0) {
-    return std::nullopt;
+// LabVIEW states the units of all columns in a line of their own.
+std::vector<std::string> units_of_labview(const std::vector<std::string_view>& lines,
+                                          const FirstNumbers& first) {
+  for (std::size_t i = first.line; i-- > 0;) {
+    if (lines[i].starts_with("Y_Unit_Label")) {
+      return cells_of(lines[i], first.separator);
+    }
   }
-  std::string_view line = lines[first.line - 1];
-  const bool is_commented = is_comment(line);
-  line.remove_prefix(is_commented ? 1 : 0);
-  std::vector<std::string> cells = cells_of(line, first.separator);
+  return {};
+}
+
+struct Header {
+  std::string line;  // as the rows' cells ask for it; empty: there is none
+  std::vector<std::string> units;
+};
+
+Header header_above(const std::vector<std::string_view>& lines, const FirstNumbers& first) {
+  std::size_t end = first.line;
+  while (end > 0 && is_blank(lines[end - 1])) {
+    --end;
+  }
+  if (end == 0) {
+    return {};
+  }
+  const bool is_commented = is_comment(lines[end - 1]);
+  std::vector<std::string> cells = cells_of_header(lines[end - 1], first.separator);
   const bool fits = is_commented ? cells.size() == first.cells : cells.size() >= first.cells;
-  if (!is_commented && first.line > 1 && are_units(cells)) {
-    cells = names_above(lines[first.line - 2], cells, first.separator).value_or(cells);
+  std::vector<std::string> units = units_of_labview(lines, first);
+  if (are_units(cells)) {
+    units = cells;
+    if (end > 1 && is_comment(lines[end - 2]) == is_commented) {
+      cells = names_above(lines[end - 2], units, first.separator).value_or(cells);
+    }
   }
-  const bool names_time = std::ranges::any_of(cells, is_time);
-  if (!fits || (is_commented && !names_time)) {
-    return std::nullopt;
+  const bool must_name_time = is_commented || end < first.line;
+  if (!fits || (must_name_time && std::ranges::none_of(cells, is_time))) {
+    return {};
   }
-  return joined_by(first.separator == blank ? '\t' : first.separator, cells, first.cells);
+  return {joined_by(first.separator == blank ? '\t' : first.separator, cells, first.cells), units};
 }
 
 std::vector<std::string_view> lines_of(std::string_view text) {
@@ -158,19 +195,19 @@ bool is_plain(const std::vector<std::string_view>& lines, const FirstNumbers& fi
 }
 }  // namespace
 
-std::string plain_table(const std::string& text) {
+PlainTable plain_table(const std::string& text) {
   const std::vector<std::string_view> lines = lines_of(text);
   const auto first = first_numbers(lines);
   if (!first || is_plain(lines, *first)) {
-    return text;
+    return {text, {}};
   }
-  const auto header = header_above(lines, *first);
+  const Header header = header_above(lines, *first);
   std::string plain;
   plain.reserve(text.size() + lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const bool is_header = header && i + 1 == first->line;
+    const bool is_header = !header.line.empty() && i + 1 == first->line;
     if (is_header) {
-      plain += *header;
+      plain += header.line;
     } else if (i < first->line) {
       plain += "#" + std::string{lines[i]};
     } else if (first->separator == blank) {
@@ -180,6 +217,6 @@ std::string plain_table(const std::string& text) {
     }
     plain += '\n';
   }
-  return plain;
+  return {plain, header.units};
 }
 }  // namespace tapstudy::analysis

@@ -18,7 +18,7 @@ struct Unit {
   double si;
 };
 constexpr double g_m_s2 = 9.80665;  // standard gravity, by definition (CGPM 1901)
-constexpr std::array<Unit, 24> units{{
+constexpr std::array<Unit, 25> units{{
     {"m/s^2", "m_s2", Quantity::acceleration, 1.0},
     {"m/s2", "m_s_2", Quantity::acceleration, 1.0},
     {"m/s²", "mps2", Quantity::acceleration, 1.0},
@@ -42,6 +42,7 @@ constexpr std::array<Unit, 24> units{{
     {"v", "v", std::nullopt, 0.0},
     {"mv", "mv", std::nullopt, 0.0},
     {"volt", "volt", std::nullopt, 0.0},
+    {"volts", "volts", std::nullopt, 0.0},
     {full_scale, "", std::nullopt, 0.0},
 }};
 
@@ -88,8 +89,9 @@ std::optional<MeasuredUnit> unit_in(const std::string& header) {
 }
 
 std::string why_not_si(const Recording& recording, Quantity quantity) {
-  const auto unit =
-      recording.unit.empty() ? unit_in(recording.channel) : unit_called(recording.unit);
+  const std::string inner = in_brackets(recording.unit);
+  const auto stated = unit_called(inner.empty() ? recording.unit : inner);
+  const auto unit = stated ? stated : unit_in(recording.channel);
   if (!unit) {
     return "";
   }

@@ -173,8 +173,9 @@ std::size_t data_column(const Table& table, const ReadingOptions& options,
 Recording read_csv_recording(std::istream& text, const std::string& file,
                              const ReadingOptions& options) {
   std::vector<std::string> remarks;
-  std::istringstream plain{plain_table(whole_lines(table_text(text, file), remarks))};
-  const Table table{read_csv(plain, file), file};
+  const PlainTable plain = plain_table(whole_lines(table_text(text, file), remarks));
+  std::istringstream rows{plain.text};
+  const Table table{read_csv(rows, file), file};
   if (table.rows() < min_samples) {
     refuse(file, table.last_line(),
            fmt::format("has {} samples (at least {})", table.rows(), min_samples));
@@ -183,6 +184,7 @@ Recording read_csv_recording(std::istream& text, const std::string& file,
   const std::size_t column = data_column(table, options, time);
   const auto of_times_hz = time ? rate_from_times(table, *time, options, remarks) : std::nullopt;
   Recording recording{file, table.title(column), 0.0, table.values(column), std::move(remarks)};
+  recording.unit = column < plain.units.size() ? plain.units[column] : "";
   recording.rate_hz =
       agreed_rate(of_times_hz, options, fmt::format("{}:{}", file, time ? table.last_line() : 1),
                   "its times say", recording.remarks);

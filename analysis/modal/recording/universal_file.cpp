@@ -63,6 +63,7 @@ Recording read_universal_file(const std::string& file, const ReadingOptions& opt
       0.0,
       record.samples,
       {}};
+  recording.unit = record.unit;
   check_samples(recording);
   const double rate_hz = record.increment > 0.0 ? 1.0 / record.increment : 0.0;
   recording.rate_hz = agreed_rate(rate_hz, options, file, "says", recording.remarks);

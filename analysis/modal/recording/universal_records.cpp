@@ -151,7 +151,9 @@ class UniversalReader {
     set.first = field<double>(form, 3, "first abscissa");
     set.increment = field<double>(form, 4, "increment");
     record();  // the abscissa's type and unit
-    set.numerator = quantity_of(record());
+    const std::string ordinate = next_line().value_or("");
+    set.numerator = quantity_of(fields_of(ordinate));
+    set.unit = units_label(ordinate);
     set.denominator = quantity_of(record());
     for (std::size_t i = identifications + 5; i < header_records; ++i) {
       record();
@@ -179,6 +181,18 @@ class UniversalReader {
     for (std::size_t i = 0; i < set.values; ++i) {
       set.complex_samples.emplace_back(values[2 * i], values[2 * i + 1]);
     }
+  }
+
+  // Of an axis: the last of fields of fixed width or, as some programs write it, of six words.
+  static std::string units_label(const std::string& axis) {
+    constexpr std::size_t begins = 47;
+    constexpr std::size_t width = 20;
+    if (axis.size() > begins) {
+      return core::trimmed(axis.substr(begins, width));
+    }
+    constexpr std::size_t all_words = 6;
+    const std::vector<std::string> words = fields_of(axis);
+    return words.size() == all_words ? words.back() : std::string{};
   }
 
   static int quantity_of(const std::vector<std::string>& fields) {

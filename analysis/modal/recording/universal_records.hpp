@@ -24,6 +24,7 @@ struct DataSet58 {
   // Specific data types: 8 displacement, 11 velocity, 12 acceleration, 13 excitation force ...
   int numerator{};
   int denominator{};
+  std::string unit;             // of the ordinate, "g"; empty or "NONE": not stated
   std::vector<double> samples;  // real values at even steps, of function type 1 alone
   std::vector<std::complex<double>> complex_samples;  // likewise, of function type 4
 };

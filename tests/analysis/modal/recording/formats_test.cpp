@@ -126,6 +126,54 @@ TEST_CASE("a channel's unit is SI, or --scale or --quantity is asked for",
              Contains("full scale"));
 }
 
+TEST_CASE("units that a table states below its names, or LabVIEW in a line, are its channel's",
+          "[analysis][recordings][formats]") {
+  struct Stated {
+    std::string above;
+    double units_per_s;
+    char separator;
+    const char* asked;
+  };
+  const std::string labview =
+      "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\t\nChannels\t1\t\n";
+  const auto stated = GENERATE_COPY(values<Stated>({
+      {"Time,Channel A\ns,g\n", 1.0, ',', "--scale 9.80665"},
+      {"Time,Channel A\n[s],[g]\n", 1.0, ',', "--scale 9.80665"},
+      {"Time,Channel A\n(ms),(g)\n\n", 1e3, ',', "--scale 9.80665"},
+      {"Time (ms),Channel A (g)\n\n", 1e3, ',', "--scale 9.80665"},
+      {"# Time Channel\n# ms g\n", 1e3, ' ', "--scale 9.80665"},
+      {"Time,Channel A\n(s),(mm/s)\n", 1.0, ',', "(--quantity velocity)"},
+      {"Time,Channel A\n(s),(V)\n", 1.0, ',', "--scale says what one is"},
+      {"x-axis,1\nsecond,Volt\n", 1.0, ',', "--scale says what one is"},
+      {"Time,Channel A\n(s),(m/s^2)\n", 1.0, ',', ""},
+      {labview + "Y_Unit_Label\tg\nX_Value\tAcc\tComment\n", 1.0, '\t', "--scale 9.80665"},
+      {labview + "Y_Unit_Label\tVolts\nX_Value\tAcc\tComment\n", 1.0, '\t', "--scale says"},
+  }));
+  CAPTURE(stated.above);
+  const Recording recording =
+      read_text(stated.above + rows_of(std::string(1, stated.separator), stated.units_per_s), {});
+  check_samples(recording);
+  const std::string why = why_not_si(recording, Quantity::acceleration);
+  CHECK(why.empty() == std::string{stated.asked}.empty());
+  CHECK_THAT(why, Contains(stated.asked));
+}
+
+TEST_CASE("units are a column's own, and its name stays without them, also where no time is",
+          "[analysis][recordings][formats]") {
+  std::string text = "Acc,Force\n(g),(N)\n";
+  for (int i = 0; i < count; ++i) {
+    text += fmt::format("{:.9g},{}\n", sample_at(i), i);
+  }
+  ReadingOptions options;
+  options.rate_hz = rate_hz;
+  options.column = "Acc";
+  const Recording acc = read_text(text, options);
+  check_samples(acc);
+  CHECK_THAT(why_not_si(acc, Quantity::acceleration), Contains("values of Acc are in g"));
+  options.column = "Force";
+  CHECK(why_not_si(read_text(text, options), Quantity::acceleration).empty());
+}
+
 TEST_CASE("a rate given beside another one is refused, or taken and said if it is to be trusted",
           "[analysis][recordings][formats]") {
   const std::string text = "time,acc\n" + rows_of(",", 1.0);
@@ -160,17 +208,18 @@ TEST_CASE("times that are rounded to whole milliseconds give way to a rate that 
 
 namespace {
 // A data set 58 as the format's description lays it out, without its values.
-std::string header_58(const std::string& kind, int function_type, int value_type, int node) {
+std::string header_58(const std::string& kind, int function_type, int value_type, int node,
+                      const std::string& unit = "m/s^2") {
   return fmt::format(
       "    -1\n{}\nNONE\nNONE\nNONE\nNONE\nNONE\n"
       "{:>5}{:>10}{:>5}{:>10} {:<10}{:>10}{:>4} {:<10}{:>10}{:>4}\n"
       "{:>10}{:>10}{:>10}{:>13.5E}{:>13.5E}{:>13.5E}\n"
       "        17    0    0    0 Time                 s\n"
-      "        12    0    0    0 Acc                  m/s^2\n"
+      "        12    0    0    0 Acc                  {}\n"
       "         0    0    0    0 NONE                 NONE\n"
       "         0    0    0    0 NONE                 NONE\n",
       kind, function_type, 0, 0, 0, "NONE", node, 3, "NONE", 1, 3, value_type, count, 1, 0.0,
-      1.0 / rate_hz, 0.0);
+      1.0 / rate_hz, 0.0, unit);
 }
 
 std::string in_text(int value_type) {
@@ -230,6 +279,22 @@ TEST_CASE("time records of universal files are the same in text and bytes of eit
   for (int i = 0; i < count; ++i) {
     CHECK(recording.samples[static_cast<std::size_t>(i)] == Approx(sample_at(i)).margin(1e-5));
   }
+}
+
+TEST_CASE("the unit of a universal file's record is its channel's",
+          "[analysis][recordings][formats]") {
+  const testing::TempDirectory directory;
+  const auto why_not = [&](const std::string& record) {
+    return why_not_si(
+        read_recording(written(directory, "taps.uff", record + in_text(2) + "    -1\n"), {}),
+        Quantity::acceleration);
+  };
+  const std::string in_g = header_58("    58", 1, 2, 7, "g");
+  CHECK_THAT(why_not(in_g), Contains("values of 7+Z are in g: --scale 9.80665"));
+  CHECK_THAT(why_not(testing::replaced(in_g, "0 Acc                  g", "0 Acc g")),
+             Contains("--scale 9.80665"));
+  CHECK(why_not(header_58("    58", 1, 2, 7)).empty());
+  CHECK(why_not(header_58("    58", 1, 2, 7, "NONE")).empty());
 }
 
 TEST_CASE("of several data sets one is chosen, and what is no time record is refused in words",

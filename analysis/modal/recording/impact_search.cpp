@@ -92,8 +92,11 @@ double Energies::of_group(std::size_t first) const {
 }
 
 namespace {
+constexpr std::size_t fewest_groups = 6;
+
 // Energies of groups of frames, without those at either end in which all samples are the same:
-// editors and triggered recorders pad so, and no sensor was recorded there.
+// editors and triggered recorders pad so, and no sensor was recorded there. But what changes in
+// fewer than six groups, 0.1 s, is a blow in a force window, beside which zeros are the silence.
 std::vector<double> energies_of_groups(const Energies& energies,
                                        const std::vector<double>& centred) {
   std::vector<double> groups;
@@ -109,7 +112,7 @@ std::vector<double> energies_of_groups(const Energies& energies,
       last = groups.size();
     }
   }
-  if (last > 0) {
+  if (last - first >= fewest_groups) {
     groups.resize(last);
     groups.erase(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(first));
   }

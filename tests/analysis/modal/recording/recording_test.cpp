@@ -250,6 +250,29 @@ TEST_CASE("samples that are all the same before and after the taps change nothin
   }
 }
 
+TEST_CASE("a blow between samples that are exactly 0 is one, as a force window leaves it",
+          "[analysis][recordings]") {
+  const double rate_hz = 8192.0;
+  const double noise = GENERATE(0.0, 0.05);  // within the window
+  const double blow_s = GENERATE(0.0015, 0.3);
+  core::Rng rng{7};
+  Recording force{"force.csv", "force", rate_hz, std::vector<double>(8192, 0.0), {}};
+  const auto first = static_cast<std::size_t>(std::lround(blow_s * rate_hz));
+  constexpr std::size_t pulse = 8;
+  constexpr std::size_t window = 300;
+  for (std::size_t i = 0; i < window; ++i) {
+    force.samples[first + i] = noise * rng.normal();
+  }
+  for (std::size_t i = 0; i < pulse; ++i) {
+    force.samples[first + i] +=
+        250.0 * std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / pulse);
+  }
+  CAPTURE(noise, blow_s);
+  const std::vector<Impact> impacts = force_impacts(force);
+  REQUIRE(impacts.size() == 1);
+  CHECK(static_cast<double>(impacts.front().onset) / rate_hz == Approx(blow_s).margin(5e-4));
+}
+
 TEST_CASE("a decay begins after the last sample at the sensor's limit", "[analysis][recordings]") {
   Recording recording = testing::planted_recording(plate, {0.5}, 4000.0, 2.0, 0.001, 4);
   CHECK(rail_samples(recording.samples, 0.0).empty());

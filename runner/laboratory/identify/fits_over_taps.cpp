@@ -1,6 +1,7 @@
 #include "runner/laboratory/identify/fits_over_taps.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -92,12 +93,64 @@ void add_amplitudes(const TapIdentification& found, const std::map<int, Fits>& f
     law.line = analysis::amplitude_line(speeds, amplitudes);
   }
 }
+
+bool is_apart(const analysis::FittedSinusoid& lower, const analysis::FittedSinusoid& higher) {
+  constexpr double gap = 1.05;
+  constexpr double normal_975 = 1.96;
+  const double errors_hz = lower.frequency_error_hz + higher.frequency_error_hz;
+  return higher.frequency_hz > gap * lower.frequency_hz &&
+         higher.frequency_hz - lower.frequency_hz > normal_975 * errors_hz;
+}
+
+// Those of taps and sensors that are dominated by different modes: between neighbours is a gap of
+// more than 5 %, beyond the intervals of both. Taps that merely scatter have one.
+std::vector<double> different_frequencies(const std::map<int, Fits>& fits) {
+  std::vector<analysis::FittedSinusoid> all;
+  for (const auto& [impact, channels] : fits) {
+    for (const IdentifiedTap* const tap : channels) {
+      all.push_back(*tap->sinusoid);
+    }
+  }
+  std::ranges::sort(all, {}, &analysis::FittedSinusoid::frequency_hz);
+  std::vector<double> means_hz;
+  double sum_hz = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    sum_hz += all[i].frequency_hz;
+    ++count;
+    if (i + 1 == all.size() || is_apart(all[i], all[i + 1])) {
+      means_hz.push_back(std::exchange(sum_hz, 0.0) / std::exchange(count, 0));
+    }
+  }
+  return means_hz;
+}
 }  // namespace
+
+std::string why_no_sinusoid(const TapIdentification& found) {
+  std::vector<double> frequencies_hz = different_frequencies(fits_of(found));
+  if (frequencies_hz.empty()) {
+    return fmt::format(
+        "no tap that was struck once and is not clipped is mostly one decaying sinusoid (it would "
+        "have to explain {:.0f} % of its energy)",
+        100.0 * min_explained_by_sinusoid);
+  }
+  if (frequencies_hz.size() == 1) {
+    return "";
+  }
+  constexpr std::size_t most_named = 5;
+  const bool are_many = frequencies_hz.size() > most_named;
+  frequencies_hz.resize(std::min(frequencies_hz.size(), most_named));
+  return fmt::format(
+      "the decaying sinusoids of taps and sensors have not one frequency but {:.4g}{} Hz: no mean "
+      "of "
+      "them is given (different modes: --column takes one sensor, --band one mode)",
+      fmt::join(frequencies_hz, ", "), are_many ? " ..." : "");
+}
 
 std::optional<SinusoidLaw> sinusoid_law(const TapIdentification& found,
                                         const std::optional<core::Finger>& finger) {
   const std::map<int, Fits> fits = fits_of(found);
-  if (fits.empty()) {
+  if (different_frequencies(fits).size() != 1) {
     return std::nullopt;
   }
   SinusoidLaw law;

@@ -11,10 +11,13 @@ namespace tapstudy::runner {
 inline constexpr double min_explained_by_sinusoid = 0.5;
 
 // One law of all taps (Okamura et al. 1998): decay, frequency, and where speeds are known the
-// amplitude of one sensor by speed; finger: that makes forces of it, of a protocol. nullopt if no
-// tap is left.
+// amplitude of one sensor by speed; finger: that makes forces of it, of a protocol. nullopt where
+// why_no_sinusoid says why.
 std::optional<SinusoidLaw> sinusoid_law(const TapIdentification& found,
                                         const std::optional<core::Finger>& finger);
+// A sentence: no tap is left, or those that are have not one frequency, of which a mean would be
+// that of nothing. Empty: there is a law.
+std::string why_no_sinusoid(const TapIdentification& found);
 
 // Taps that are no free decays of the modes found: these explain less than 99.8 % of the energy,
 // and what is left exceeds the recording's noise more than four times.

@@ -336,10 +336,7 @@ class Identifier {
     result_.sinusoid = sinusoid_law(
         result_, protocol_ ? std::optional{protocol_->rendering.finger} : std::nullopt);
     if (!result_.sinusoid) {
-      result_.remarks.push_back(
-          fmt::format("no tap that was struck once and is not clipped is mostly one decaying "
-                      "sinusoid (it would have to explain {:.0f} % of its energy)",
-                      100.0 * min_explained_by_sinusoid));
+      result_.remarks.push_back(why_no_sinusoid(result_));
     }
     if (protocol_) {
       result_.model = compared_with_model();

@@ -340,6 +340,33 @@ TEST_CASE("sensors of one impact are one tap, and each has an amplitude of its o
   CHECK(tip->amplitude_per_speed->value == Approx(50.0));
 }
 
+TEST_CASE("taps and sensors dominated by different modes have no mean decaying sinusoid",
+          "[runner][identify]") {
+  const auto found_of = [](const std::vector<double>& frequencies_hz, double error_hz) {
+    runner::TapIdentification found;
+    for (const double frequency_hz : frequencies_hz) {
+      runner::IdentifiedTap tap;
+      tap.impact = static_cast<int>(found.taps.size() / 2) + 1;
+      tap.channel = found.taps.size() % 2 == 0 ? "tip" : "nail";
+      tap.sinusoid = analysis::FittedSinusoid{};
+      tap.sinusoid->frequency_hz = frequency_hz;
+      tap.sinusoid->frequency_error_hz = error_hz;
+      tap.sinusoid->decay_per_s = 12.0;
+      tap.sinusoid->explained = 0.8;
+      found.taps.push_back(tap);
+    }
+    return found;
+  };
+  const auto different = found_of({199.0, 415.0, 201.0, 413.0}, 0.1);
+  CHECK_FALSE(runner::sinusoid_law(different, {}));
+  CHECK_THAT(runner::why_no_sinusoid(different), Contains("200, 414 Hz"));
+  for (const auto& one : {found_of({190.0, 199.0, 208.0, 217.0}, 0.1),  // they scatter
+                          found_of({190.0, 210.0, 190.0, 210.0}, 10.0)}) {
+    CHECK(runner::sinusoid_law(one, {}));
+    CHECK(runner::why_no_sinusoid(one).empty());
+  }
+}
+
 TEST_CASE("one motion of a surface is one force on the finger, whichever sensor measured it",
           "[runner][identify]") {
   const core::Finger finger{0.058, 300.0, 3.0};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -190,6 +191,20 @@ const MatlabChannel& chosen_of(const std::vector<MatlabChannel>& channels,
                   fmt::join(names, ", "), are_many ? " ..." : "")};
 }
 
+// Times and a scalar beside them that say different rates.
+void check_agree(double of_times_hz, const std::string& times, double of_scalar_hz,
+                 const std::string& scalar, const Recording& recording,
+                 const ReadingOptions& options) {
+  const bool is_decided = options.rate_hz > 0.0 && options.trusts_rate;
+  const bool agree = std::abs(of_scalar_hz / of_times_hz - 1.0) <= max_rate_difference;
+  if (!agree && !is_decided) {
+    throw core::InvalidInput{
+        fmt::format("{}: its times {} say {:.6g} samples a second, its scalar {} {:.6g} (the right "
+                    "one: --rate HZ --trust-rate)",
+                    recording.file, times, of_times_hz, scalar, of_scalar_hz)};
+  }
+}
+
 // By the times or the scalar beside the chosen array, or else of the file.
 std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
                                   const MatlabArray& chosen, const ReadingOptions& options,
@@ -203,17 +218,23 @@ std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
     const std::string name = core::lower_case(array.own_name());
     return array.size() == 1 && std::ranges::find(names, name) != names.end();
   };
+  const auto scalar = std::ranges::find_if(arrays, is_rate);
+  const auto of_scalar =
+      scalar == arrays.end() ? std::nullopt : std::optional{values_of(file, *scalar, path).front()};
   for (const MatlabArray& array : arrays) {
     if (is_time(array) && array.size() == recording.samples.size()) {
       const auto rate = rate_of_times(
           values_of(file, array, path), options, [&](std::size_t) { return path; },
           recording.remarks);
-      return rate ? std::optional{*rate / seconds_per_unit(array.own_name())} : std::nullopt;
+      const auto rate_hz =
+          rate ? std::optional{*rate / seconds_per_unit(array.own_name())} : std::nullopt;
+      if (rate_hz && of_scalar && scalar->structure() == array.structure()) {
+        check_agree(*rate_hz, array.name, *of_scalar, scalar->name, recording, options);
+      }
+      return rate_hz;
     }
   }
-  const auto scalar = std::ranges::find_if(arrays, is_rate);
-  return scalar == arrays.end() ? std::nullopt
-                                : std::optional{values_of(file, *scalar, path).front()};
+  return of_scalar;
 }
 
 [[noreturn]] void refuse_matlab(const std::string& file) {

@@ -23,8 +23,7 @@ std::string with_ascii_micro(const std::string& text) {
 }
 
 namespace {
-constexpr double highest_rate_hz = 1e7;        // as of --rate
-constexpr double max_rate_difference = 0.001;  // more is a mistake, not rounded times
+constexpr double highest_rate_hz = 1e7;  // as of --rate
 
 // In lower case; everything but letters becomes blanks.
 std::string letters_of(const std::string& name) {

@@ -12,6 +12,9 @@ double seconds_per_unit(const std::string& name);
 // The micro sign and the Greek letter mu as u.
 std::string with_ascii_micro(const std::string& text);
 
+// Rates that differ by a larger share contradict each other: that is no rounding of times.
+inline constexpr double max_rate_difference = 0.001;
+
 // The rate of the even times nearest to these (least squares) [1 / their unit]. place(i) begins the
 // message about one of them, "file:line" or "file". Unset, with a remark, for times that do not
 // ascend, or are further from a grid than max_jitter_periods, if a rate is given that is to be

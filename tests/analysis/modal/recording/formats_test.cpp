@@ -372,6 +372,22 @@ TEST_CASE("arrays of a MATLAB file are what SciPy wrote, and no sound",
   CHECK_THROWS_WITH(read_recording(directory / "no.mat", {}), Contains("MATLAB"));
 }
 
+TEST_CASE("times and a scalar of a MATLAB file that contradict each other are refused",
+          "[analysis][recordings][formats]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.mat";
+  saved_by_scipy({{file, "'acc': x, 't': np.arange(80) / 2000, 'fs': 1000.0"},
+                  {directory / "same.mat", "'acc': x, 't': np.arange(80) / 2000, 'fs': 2000.5"}});
+  CHECK_THROWS_WITH(read_recording(file, {}),
+                    Contains("its times t say 2000 samples a second, its scalar fs 1000") &&
+                        Contains("--trust-rate"));
+  ReadingOptions options;
+  options.rate_hz = rate_hz;
+  options.trusts_rate = true;
+  CHECK(read_recording(file, options).rate_hz == rate_hz);
+  CHECK(read_recording(directory / "same.mat", {}).rate_hz == Approx(rate_hz));
+}
+
 TEST_CASE(
     "an array in a structure of a MATLAB file is named with it, its rate is the one beside it",
     "[analysis][recordings][formats]") {

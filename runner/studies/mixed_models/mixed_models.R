@@ -185,23 +185,56 @@ wald_of <- function(estimates, covariance, among) {
   c(value, pchisq(value, length(b), lower.tail = FALSE), length(b))
 }
 
-# Rows of the fixed effects, each by Wald's z, and of each predictor with several coefficients.
-wald_rows <- function(model, design, estimates, covariance) {
+most_determined <- 10  # of an estimate and of a standard error, as logits
+not_determined <- "none: not determined by the answers"
+
+# Rows of the fixed effects, each by Wald's z, and of each predictor with several coefficients. What
+# the answers do not determine is left out: where the likelihood has its maximum at infinity, numbers
+# are of where the search stopped.
+wald_rows <- function(model, labels, terms, estimates, covariance) {
   errors <- sqrt(diag(covariance))
+  is_open <- !(abs(estimates) <= most_determined & errors <= most_determined) %in% TRUE
+  estimates[is_open] <- errors[is_open] <- NA
   z <- estimates / errors
-  single <- row_of(model, design$labels, estimates, errors, z, 2 * pnorm(-abs(z)), "Wald z")
-  joint <- lapply(unique(design$term[duplicated(design$term)]), function(term) {
-    test <- wald_of(estimates, covariance, which(design$term == term))
+  single <- row_of(model, labels, estimates, errors, z, 2 * pnorm(-abs(z)),
+                   ifelse(is_open, not_determined, "Wald z"))
+  joint <- lapply(unique(terms[duplicated(terms)]), function(term) {
+    among <- which(terms == term)
+    if (any(is_open[among])) return(row_of(model, term, test = not_determined))
+    test <- wald_of(estimates, covariance, among)
     row_of(model, term, statistic = test[1], p = test[2],
            test = sprintf("Wald chi-squared, %d df", test[3]))
   })
-  do.call(rbind, c(list(single), joint))
+  list(rows = do.call(rbind, c(list(single), joint)), any_open = any(is_open))
 }
 
-extreme_note <- function(estimates) {
-  if (any(abs(estimates) > 10)) {
-    "an estimate beyond 10 is of cells with one answer only: its standard error means nothing"
+# The combinations of values, of as few predictors as say it, whose answers are all `outcome`.
+cells_alike <- function(rows, predictors, outcome) {
+  found <- list()
+  for (size in seq_along(predictors)) {
+    for (names in combn(predictors, size, simplify = FALSE)) {
+      cell <- do.call(paste, c(lapply(names, function(n) paste0(n, "=", rows[[n]])), sep = "\r"))
+      alike <- tapply(rows$outcome == outcome, cell, all)
+      for (parts in strsplit(names(alike)[alike], "\r", fixed = TRUE)) {
+        if (!any(vapply(found, function(f) all(f %in% parts), NA))) found <- c(found, list(parts))
+      }
+    }
   }
+  vapply(found, paste, "", collapse = " with ")
+}
+
+# outcomes: the lowest and the highest, by what they are called.
+open_note <- function(rows, predictors, outcomes) {
+  most_named <- 6
+  cells <- unlist(lapply(names(outcomes), function(name) {
+    alike <- cells_alike(rows, predictors, outcomes[[name]])
+    if (length(alike) > 0) paste("all", name, "for", alike)
+  }))
+  if (length(cells) > most_named) {
+    cells <- c(cells[seq_len(most_named)], paste(length(cells) - most_named, "cells more"))
+  }
+  if (is.null(cells)) cells <- "predictors together part them without overlap"
+  paste("the answers do not determine the effects without numbers:", paste(cells, collapse = ", "))
 }
 
 fit_right_or_wrong <- function(model, rows, design, within, people) {
@@ -225,13 +258,10 @@ fit_right_or_wrong <- function(model, rows, design, within, people) {
   found$spread <- spread_of(found$fit, design)
   estimates <- lme4::fixef(found$fit)
   covariance <- as.matrix(vcov(found$fit))
-  found$rows <- rbind(
-    row_of(model, "intercept", estimates[1], sqrt(covariance[1, 1]),
-           estimates[1] / sqrt(covariance[1, 1]),
-           2 * pnorm(-abs(estimates[1] / sqrt(covariance[1, 1]))), "Wald z"),
-    wald_rows(model, design, estimates[-1], covariance[-1, -1, drop = FALSE]),
-    spread_rows(model, found$spread))
-  found$extreme <- extreme_note(estimates)
+  tested <- wald_rows(model, c("intercept", design$labels), c("intercept", design$term), estimates,
+                      covariance)
+  found$rows <- rbind(tested$rows, spread_rows(model, found$spread))
+  if (tested$any_open) found$open <- open_note(rows, model$predictors, c(right = 1, wrong = 0))
   found
 }
 
@@ -251,12 +281,16 @@ fit_ratings <- function(model, rows, design, within, people) {
   covariance <- vcov(found$fit)
   thresholds <- found$fit$alpha
   estimates <- found$fit$beta
+  tested <- wald_rows(model, design$labels, design$term, estimates,
+                      covariance[names(estimates), names(estimates), drop = FALSE])
   found$rows <- rbind(
     row_of(model, paste0("between ", names(thresholds)), thresholds,
            sqrt(diag(covariance)[names(thresholds)])),
-    wald_rows(model, design, estimates, covariance[names(estimates), names(estimates), drop = FALSE]),
-    spread_rows(model, found$spread))
-  found$extreme <- extreme_note(estimates)
+    tested$rows, spread_rows(model, found$spread))
+  if (tested$any_open) {
+    ends <- range(rows$outcome)
+    found$open <- open_note(rows, model$predictors, setNames(ends, ends))
+  }
   found
 }
 
@@ -368,6 +402,7 @@ rows_of_block <- function(rows) {
   rows <- rows[!missing, , drop = FALSE]
   people <- length(unique(rows$participant_id))
   predictors <- predictors_of(rows)
+  model$predictors <- predictors$names
   reason <- obstacle(kind, rows, predictors$names, people)
   if (!is.null(reason)) return(row_of(model, note = reason))
   model$cell <- as.integer(factor(do.call(paste, c(rows[predictors$names], sep = "\r")),
@@ -387,7 +422,7 @@ rows_of_block <- function(rows) {
     paste("not estimable:", paste(found$refused, collapse = "; "))
   }
   note <- paste(c(fitted_to, lost, found$note, fallen_back, spread_note(found$spread), predictors$renamed, design$notes,
-                  found$extreme), collapse = "; ")
+                  found$open), collapse = "; ")
   if (is.null(found$fit)) return(row_of(model, note = paste("not fitted:", note)))
   result <- found$rows
   result$note[1] <- note

@@ -1,6 +1,7 @@
 // Mixed models of a study's answers, fitted by R.
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "runner/studies/mixed_models/fit_in_r.hpp"
 #include "support/built_paths.hpp"
@@ -48,6 +49,38 @@ TEST_CASE("mixed models are those that R's packages fit, of public and of simula
   CHECK(compared.exit_code == 0);
   CHECK_THAT(compared.standard_output, Contains("answered factor_a=a1:factor_b=b1:group=experts") &&
                                            Contains("thresholds factor_a=a1:factor_b=b1"));
+}
+
+// Six people, two factors, 12 answers to each of four stimuli: `right` of those to a1 with b1.
+TEST_CASE("an effect that no answer determines has no p, and the note says which cell",
+          "[runner][mixed_models][slow]") {
+  const TempDirectory directory;
+  testing::write(directory / "mixed_models.R", runner::mixed_models_script());
+  for (const int right : {10, 12}) {
+    std::string data = "block,kind,participant_id,outcome,count,factor_a,factor_b\n";
+    for (int person = 0; person < 6; ++person) {
+      for (int cell = 0; cell < 4; ++cell) {
+        const int of_cell = cell == 0 ? right : 5 + (person + cell) % 4;
+        for (const int outcome : {1, 0}) {
+          data += fmt::format("ident,right_or_wrong,P{},{},{},a{},b{}\n", person, outcome,
+                              outcome == 1 ? of_cell : 12 - of_cell, 1 + cell / 2, 1 + cell % 2);
+        }
+      }
+    }
+    testing::write(directory / "mixed_models_data.csv",
+                   std::regex_replace(data, std::regex{"[^\n]*,0,a[^\n]*\n"}, ""));
+    printed("Rscript --vanilla '" + directory.path() + "/mixed_models.R' 2>&1");
+    std::ifstream file{directory / "mixed_models.csv"};
+    const auto rows = analysis::read_mixed_models(file, "mixed_models.csv");
+    REQUIRE(rows.size() >= 4);
+    for (std::size_t i = 0; i < 4; ++i) {  // intercept, a, b, a × b: each holds the cell
+      CAPTURE(right, rows[i].term, rows.front().note);
+      CHECK(rows[i].p.has_value() == (right < 12));
+      CHECK(rows[i].estimate.has_value() == (right < 12));
+    }
+    CHECK((rows.front().note.find("all right for factor_a=a1 with factor_b=b1") !=
+           std::string::npos) == (right == 12));
+  }
 }
 
 TEST_CASE("the exported script finds what the report says, of all answers that count",

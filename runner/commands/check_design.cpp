@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/report/confusion/chance_tests.hpp"
+#include "analysis/report/document/wording.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/schedule/groups.hpp"
@@ -22,6 +24,7 @@
 #include "runner/session/engine/planned_sessions.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/studies/counted.hpp"
+#include "runner/studies/study_summary.hpp"
 namespace tapstudy::runner {
 namespace {
 constexpr double alpha = 0.05;
@@ -74,10 +77,51 @@ void warn_of_unequal_answers(const protocols::Block& block) {
   }
 }
 
-void print_power(const protocols::Protocol& protocol, const protocols::Block& block,
-                 int participants) {
+// Of the report's test of accuracy, by so many in all groups; unset where it draws no order again.
+std::optional<double> smallest_p(const protocols::Protocol& protocol, const protocols::Block& block,
+                                 int in_all) {
+  const analysis::StudyDesign study = design_of(protocol, results::Mode::simulated);
+  const auto design = std::ranges::find(study.blocks, block.name, &analysis::BlockDesign::name);
+  std::vector<analysis::Place> participants;
+  for (int i = 0; i < in_all; ++i) {
+    if (protocols::does(protocols::group_of(protocol, i), block)) {
+      participants.push_back({i, i});
+    }
+  }
+  return design == study.blocks.end() ? std::nullopt
+                                      : analysis::smallest_chance_p(*design, participants);
+}
+
+// Whether the test's p has steps small enough to say how many answers it needs.
+bool warn_of_few_orders(const protocols::Protocol& protocol, const protocols::Block& block,
+                        int in_all) {
+  constexpr double too_large = alpha / 5.0;
+  const double smallest = smallest_p(protocol, block, in_all).value_or(0.0);
+  const bool is_declared = std::ranges::any_of(protocol.hypotheses, [&](const auto& of) {
+    return of.block == block.name && of.claim == protocols::Claim::accuracy_above_chance;
+  });
+  const std::size_t family = is_declared ? protocol.hypotheses.size() : 1;
+  const double adjusted = std::min(1.0, smallest * static_cast<double>(family));
+  if (smallest <= too_large && adjusted <= alpha) {
+    return true;
+  }
+  fmt::print(
+      "    warning: even if all answers are right, the report's test against chance gives about "
+      "{}{}: the order of so few can be drawn in few ways (more participants, or order: shuffle)\n",
+      analysis::p_value(smallest),
+      family > 1 ? fmt::format(", up to {:.2g} when adjusted for {} hypotheses", adjusted, family)
+                 : "");
+  return false;
+}
+
+void print_power(const protocols::Protocol& protocol, const protocols::Block& block, int in_all) {
   const double chance = block.task->chance_level(block, protocol);
-  const int answers = participants * block.task->counted_answers(block);
+  if (!warn_of_few_orders(protocol, block, in_all)) {
+    fmt::print("    chance {:.0f} %\n", 100.0 * chance);
+    return;
+  }
+  const int answers =
+      protocols::participants_of(protocol, block, in_all) * block.task->counted_answers(block);
   const int critical = analysis::critical_successes(answers, chance, alpha);
   fmt::print(
       "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, as if all answers "
@@ -309,7 +353,7 @@ void print_blocks(const protocols::Protocol& protocol, const BlockLengths& lengt
                            ? std::nullopt
                            : std::optional{block.task->guess_rate(block, protocol)});
     } else if (block.task->has_chance_level()) {
-      print_power(protocol, block, protocols::participants_of(protocol, block, participants));
+      print_power(protocol, block, participants);
       warn_of_unequal_answers(block);
     }
   }

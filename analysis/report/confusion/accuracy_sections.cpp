@@ -128,8 +128,8 @@ void add_remark_on_chance(const IdentificationSummary& summary, ReportSection& s
   section.remarks.push_back(
       fmt::format("A participant's probability (one-sided, not adjusted for the number of "
                   "participants) is that of the same test of that participant's answers alone, by "
-                  "{} draws, so that none is below {:.3f}.",
-                  draws_of_a_participant, 1.0 / (draws_of_a_participant + 1)));
+                  "{} draws, so that none is below about {:.2g}.",
+                  draws_of_a_participant, summary.smallest_p_of_one));
   if (has_other_answers(summary)) {
     section.remarks.emplace_back(
         "Some answers name no stimulus, and count as wrong. Chance is that of an observer who "

@@ -24,13 +24,28 @@ RightAnswers same_level(const ConfusionMatrix& matrix, const std::string& factor
   return right;
 }
 
-NullTables by_own_orders(const BlockDesign& design, const IdentificationData& data) {
+// The place of an answer that is right for each stimulus; 0 where none is.
+std::vector<int> first_right_responses(const RightAnswers& right) {
+  std::vector<int> first;
+  for (const std::vector<bool>& of_stimulus : right) {
+    const auto found = std::ranges::find(of_stimulus, true);
+    first.push_back(found == of_stimulus.end()
+                        ? 0
+                        : static_cast<int>(std::distance(of_stimulus.begin(), found)));
+  }
+  return first;
+}
+
+// responses: instead of the answers given, by stimulus; empty: those given.
+NullTables by_own_orders(const BlockDesign& design, const IdentificationData& data,
+                         const std::vector<int>& responses) {
   std::vector<Answers> answers;
   for (const IdentifyingParticipant& person : data.participants) {
     answers.emplace_back();
     for (const IdentifiedTrial& trial : person.trials) {
       answers.back().stimuli.push_back(static_cast<int>(trial.stimulus));
-      answers.back().responses.push_back(static_cast<int>(trial.response));
+      answers.back().responses.push_back(responses.empty() ? static_cast<int>(trial.response)
+                                                           : responses.at(trial.stimulus));
     }
   }
   const Redraw redraw = [participants = data.participants, order_of = design.redraw](
@@ -71,7 +86,9 @@ Randomisation randomisation_of(const BlockDesign& design, const IdentificationDa
             "give"};
   }
   if (design.redraw && answers <= most_redrawn) {
-    return {by_own_orders(design, data), "draws of the study's own orders"};
+    const auto all_right = first_right_responses(right_answers({data.stimuli, data.responses}));
+    return {by_own_orders(design, data, {}), "draws of the study's own orders",
+            by_own_orders(design, data, all_right)};
   }
   return {by_shuffles(data),
           design.is_order_known
@@ -133,6 +150,49 @@ ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatr
                            randomisation.words);
   tests.factors.assign(results.begin() + 1, results.end());
   return tests;
+}
+
+bool is_smallest_p(const Randomisation& randomisation, const ConfusionMatrix& matrix,
+                   const PermutationResult& accuracy, const Draws& wanted) {
+  return randomisation.if_all_right && accuracy.as_good > 0 &&
+         permutation_tests(*randomisation.if_all_right, {right_answers(matrix)}, accuracy.draws,
+                           wanted.seed)
+                 .front()
+                 .as_good == accuracy.as_good;
+}
+
+std::optional<double> smallest_chance_p(const BlockDesign& design,
+                                        const std::vector<Place>& participants) {
+  if (!design.redraw) {
+    return std::nullopt;
+  }
+  constexpr std::uint64_t any_draw = 0;
+  IdentificationData data{design.stimuli, design.responses, {}};
+  for (const Place& place : participants) {
+    IdentifyingParticipant& person = data.participants.emplace_back();
+    person.place = place;
+    const std::vector<int> order = design.redraw(place, any_draw);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      if (order[i] >= 0) {  // no catch trial
+        IdentifiedTrial& trial = person.trials.emplace_back();
+        trial.stimulus = static_cast<std::size_t>(order[i]);
+        trial.place = i;
+      }
+    }
+  }
+  const Randomisation randomisation = randomisation_of(design, data);
+  if (!randomisation.if_all_right) {
+    return std::nullopt;
+  }
+  constexpr double well_below = 0.01;
+  const auto p_of = [&](int draws) {
+    return permutation_tests(*randomisation.if_all_right,
+                             {right_answers({data.stimuli, data.responses})}, draws, 1)
+        .front()
+        .p;
+  };
+  const double roughly = p_of(min_draws);
+  return roughly > well_below ? p_of(max_draws) : roughly;
 }
 
 std::optional<double> chance_p_of(const IdentifyingParticipant& person, const BlockDesign& design,

@@ -10,6 +10,8 @@ namespace tapstudy::analysis {
 struct Randomisation {
   std::optional<NullTables> tables;  // unset: nothing was randomised, or answered
   std::string words;                 // how, or why not
+  // The same draws where all answers are right; unset where answers are shuffled.
+  std::optional<NullTables> if_all_right{};
 };
 // By the study's own orders, drawn again; beyond 20 000 answers, and where nobody knows the order,
 // by shuffling each participant's answers over the trials.
@@ -39,6 +41,16 @@ struct ChanceTests {
 };
 ChanceTests chance_tests(const Randomisation& randomisation, const ConfusionMatrix& matrix,
                          const std::vector<std::string>& factors, const Draws& wanted = {});
+
+// Whether no other answers could have had a smaller p for accuracy, by the same draws: few draws of
+// a study's orders may differ.
+bool is_smallest_p(const Randomisation& randomisation, const ConfusionMatrix& matrix,
+                   const PermutationResult& accuracy, const Draws& wanted = {});
+
+// The p that accuracy has in this test if all answers of these participants are right: none can be
+// smaller. Below .01 it is only roughly known. Unset where nothing is drawn again.
+std::optional<double> smallest_chance_p(const BlockDesign& design,
+                                        const std::vector<Place>& participants);
 
 // Draws of the test of one participant: many are tested, and p can fall to .001.
 inline constexpr int draws_of_a_participant = 999;

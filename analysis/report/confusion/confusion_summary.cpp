@@ -99,13 +99,17 @@ void add_tests(const BlockDesign& design, const Randomisation& randomisation,
   summary.chance_test = tests.test;
   if (tests.accuracy) {
     summary.chance_p = tests.accuracy->p;
+    if (!design.is_for_main_results &&
+        is_smallest_p(randomisation, summary.matrix, *tests.accuracy)) {
+      summary.chance_test += "; the smallest p that this design allows";
+    }
   }
   for (std::size_t i = 0; i < tests.factors.size(); ++i) {
     summary.factors[i].p = tests.factors[i].p;  // those without condition come first
   }
   for (const PlannedHypothesis& planned : design.hypotheses) {
-    HypothesisResult result{planned,      tests.test, summary.accuracy, summary.matrix.chance(),
-                            std::nullopt, 0.0};
+    HypothesisResult result{
+        planned, summary.chance_test, summary.accuracy, summary.matrix.chance(), std::nullopt, 0.0};
     if (tests.accuracy) {
       result.p = tests.accuracy->p;
       result.p_floor = tests.accuracy->as_good == 0 ? tests.accuracy->p : 0.0;
@@ -153,6 +157,10 @@ IdentificationSummary::IdentificationSummary(const BlockDesign& design,
   add_over_participants(counted, *this);
   personal = shares_right(*this);
   add_tests(design, counted.randomisation, *this);
+  smallest_p_of_one = 1.0 / (draws_of_a_participant + 1);
+  if (!design.is_for_main_results) {
+    smallest_p_of_one = smallest_chance_p(design, {Place{}}).value_or(smallest_p_of_one);
+  }
   if (chance_p) {
     methods = "Accuracy of identification against chance: " + chance_test + ".";
   }

@@ -41,6 +41,7 @@ class IdentificationSummary final : public BlockSummary {
   std::vector<ParticipantAccuracy> participants;  // none when only counts are known
   std::string chance_test;         // how accuracy was tested against chance, or why not
   std::optional<double> chance_p;  // its probability
+  double smallest_p_of_one{};      // of a participant's own test, if all answers are right
   std::string information;         // a sentence on information transfer
 
  private:

@@ -84,11 +84,14 @@ std::optional<ModeOfPart> mode_of_part(const std::vector<FreeDecay>& decays, con
         add_neighbours(taps[i], *itself, part, sharing.back());
       }
     }
+    if (sharing.empty()) {
+      return std::nullopt;
+    }
     fit = fit_shared_poles(sharing, {pole});
   } catch (const core::InvalidInput&) {
     return std::nullopt;
   }
-  if (sharing.empty() || !fit.decays.front().has_converged) {
+  if (!fit.decays.front().has_converged) {
     return std::nullopt;
   }
   const FittedMode& mode = fit.decays.front().modes.front();

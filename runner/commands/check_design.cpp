@@ -92,7 +92,7 @@ std::optional<double> smallest_p(const protocols::Protocol& protocol, const prot
                                       : analysis::smallest_chance_p(*design, participants);
 }
 
-// Whether the test's p has steps small enough to say how many answers it needs.
+// True, and warns, where the test's p has too few steps to say how many answers it needs.
 bool warn_of_few_orders(const protocols::Protocol& protocol, const protocols::Block& block,
                         int in_all) {
   constexpr double too_large = alpha / 5.0;
@@ -103,7 +103,7 @@ bool warn_of_few_orders(const protocols::Protocol& protocol, const protocols::Bl
   const std::size_t family = is_declared ? protocol.hypotheses.size() : 1;
   const double adjusted = std::min(1.0, smallest * static_cast<double>(family));
   if (smallest <= too_large && adjusted <= alpha) {
-    return true;
+    return false;
   }
   fmt::print(
       "    warning: even if all answers are right, the report's test against chance gives about "
@@ -111,12 +111,12 @@ bool warn_of_few_orders(const protocols::Protocol& protocol, const protocols::Bl
       analysis::p_value(smallest),
       family > 1 ? fmt::format(", up to {:.2g} when adjusted for {} hypotheses", adjusted, family)
                  : "");
-  return false;
+  return true;
 }
 
 void print_power(const protocols::Protocol& protocol, const protocols::Block& block, int in_all) {
   const double chance = block.task->chance_level(block, protocol);
-  if (!warn_of_few_orders(protocol, block, in_all)) {
+  if (warn_of_few_orders(protocol, block, in_all)) {
     fmt::print("    chance {:.0f} %\n", 100.0 * chance);
     return;
   }

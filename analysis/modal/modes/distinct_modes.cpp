@@ -47,16 +47,18 @@ double reach_of(const RepeatedMode& mode) {
 // shifts the fit of it alone by more than its interval: there modes stay as the taps show them.
 constexpr double longest_examined_s = 0.3;
 
-// What the tap shows beyond a part of the band, so many samples later.
-TapModes beyond(const Band& part, TapModes tap, double later) {
-  std::erase_if(tap.modes,
-                [&](const TapMode& mode) { return part.holds(mode.fitted.pole.frequency_hz); });
-  for (TapMode& mode : tap.modes) {
+// What a tap shows beyond a part of the band, so many samples later.
+std::vector<TapMode> beyond(const Band& part, const TapModes& tap, double later) {
+  std::vector<TapMode> modes;
+  std::ranges::copy_if(tap.modes, std::back_inserter(modes), [&](const TapMode& mode) {
+    return !part.holds(mode.fitted.pole.frequency_hz);
+  });
+  for (TapMode& mode : modes) {
     const std::complex<double> log_z = log_of(mode.fitted.pole, tap.spectrum.rate_hz);
     mode.fitted.amplitude *= std::exp(log_z.real() * later);
     mode.fitted.phase_rad += log_z.imag() * later;
   }
-  return tap;
+  return modes;
 }
 
 // How strongly a mode is moved at rest, before the tap: the amplitude of one tone with the power

@@ -315,8 +315,8 @@ TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& 
   return result;
 }
 
-FreeDecay without_modes(FreeDecay decay, const TapModes& tap) {
-  for (const TapMode& mode : tap.modes) {
+FreeDecay without_modes(FreeDecay decay, const std::vector<TapMode>& modes) {
+  for (const TapMode& mode : modes) {
     const FittedMode& fitted = mode.fitted;
     if (fitted.pole.damping_ratio < 0.0) {
       continue;  // no free decay

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/modal/decay/decay_fit.hpp"
 #include "analysis/modal/decay/pole_estimation.hpp"
@@ -45,9 +46,9 @@ TapModes identify_modes(const FreeDecay& decay, const Band& band);
 TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& band,
                     const std::vector<double>& lines_hz);
 
-// A decay without what the fit says of these modes. What a mode leaves in another part of a band is
-// smooth there, but no polynomial: it would be felt in the damping of modes there.
-FreeDecay without_modes(FreeDecay decay, const TapModes& tap);
+// A decay without what the fit says of these modes of its tap. What a mode leaves in another part
+// of a band is smooth there, but no polynomial: it would be felt in the damping of modes there.
+FreeDecay without_modes(FreeDecay decay, const std::vector<TapMode>& modes);
 
 // The largest number of modes that can be fitted to a spectrum beside lines.
 std::size_t max_mode_count(const BandSpectrum& spectrum, const std::vector<double>& lines_hz);

@@ -142,8 +142,7 @@ std::string why_no_sinusoid(const TapIdentification& found) {
   frequencies_hz.resize(std::min(frequencies_hz.size(), most_named));
   return fmt::format(
       "the decaying sinusoids of taps and sensors have not one frequency but {:.4g}{} Hz: no mean "
-      "of "
-      "them is given (different modes: --column takes one sensor, --band one mode)",
+      "of them is given (different modes: --column takes one sensor, --band one mode)",
       fmt::join(frequencies_hz, ", "), are_many ? " ..." : "");
 }
 

@@ -171,7 +171,7 @@ void take_modes(const PartOfBand& part, std::size_t tap, analysis::FreeDecay& de
   const auto place = std::ranges::find(part.taps, tap);
   if (place != part.taps.end()) {
     const auto k = static_cast<std::size_t>(place - part.taps.begin());
-    decay = analysis::without_modes(std::move(decay), part.modes[k]);
+    decay = analysis::without_modes(std::move(decay), part.modes[k].modes);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "analysis/report/document/sections.hpp"
+#include "analysis/report/document/wording.hpp"
 #include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/statistics/rank_tests.hpp"
@@ -107,8 +108,16 @@ std::map<std::string, std::vector<Contrast>> contrasts_of(
   return contrasts;
 }
 
+std::string in_words(const Contrast& one, double p_holm, bool are_several) {
+  return fmt::format(
+      "{} against {}: {}; {}; {}", one.first->block, one.second->block,
+      contrast_in_words(one.result.mean, one.result.interval, one.first->personal->is_ratio),
+      adjusted_in_words(one.result.p, p_holm, are_several),
+      people_in_words(one.result.participants, one.in_both, one.result.ranges));
+}
+
 void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts,
-              ReportTable& table) {
+              ReportTable& table, std::vector<std::string>& findings) {
   std::vector<double> p;
   std::ranges::transform(contrasts, std::back_inserter(p),
                          [](const Contrast& contrast) { return contrast.result.p; });
@@ -120,6 +129,8 @@ void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts
          difference_or_ratio(one.result.mean, one.result.interval, one.first->personal->is_ratio),
          people_known(one.result.participants, one.in_both), probability(one.result.p),
          probability(adjusted[i])});
+    findings.push_back((i == 0 ? measure + ": " : "") +
+                       in_words(one, adjusted[i], contrasts.size() > 1));
   }
 }
 
@@ -143,15 +154,17 @@ std::optional<ReportSection> block_contrasts(
   ReportTable differences =
       empty_table("contrast_differences", "Differences within participants",
                   interval_column("first - second (95 % CI, t)", "difference"));
+  std::vector<std::string> findings;
   for (const auto& [measure, contrasts] : contrasts_of(blocks)) {
-    add_rows(measure, contrasts,
-             contrasts.front().first->personal->is_ratio ? ratios : differences);
+    add_rows(measure, contrasts, contrasts.front().first->personal->is_ratio ? ratios : differences,
+             findings);
   }
   if (ratios.rows.empty() && differences.rows.empty()) {
     return std::nullopt;
   }
   ReportSection section{"Blocks compared", {differences, ratios}};
   section.name = study_sections::contrasts;
+  section.findings = std::move(findings);
   section.remarks.emplace_back(core::citing(
       "Of participants with a value in both blocks, or one that is known to lie beyond the levels "
       "presented (\"6 of 8\": of two nothing is known); ratios are geometric means. Two-sided "

@@ -26,7 +26,7 @@ figure{margin:0}figcaption{font-size:.85rem;color:#567}.chart{width:100%;height:
 .section>summary,section>h3{border-top:1px solid #cdd6df;padding-top:.6rem}.section>summary{margin-top:.6rem}summary h3{display:inline}.section>summary h3{font-size:1.1rem}
 section>h3{font-size:1.1rem}section .data~h3,section>h3~h3{font-size:1rem;border:0;padding:0}
 .note,.provenance{font-size:.85rem;color:#567}.provenance th{text-align:left;font-weight:500;padding-right:1rem;vertical-align:top}
-.provenance td{word-break:break-all}.notes{white-space:pre-line}
+.provenance td{overflow-wrap:anywhere}.notes{white-space:pre-line}
 @media (max-width:600px){.accuracy td{white-space:normal;padding-right:.5rem}.accuracy th{padding-right:.5rem;overflow-wrap:anywhere}.accuracy th[scope=row]{min-width:5.5rem}.accuracy thead th{overflow-wrap:normal}
   .dot{width:72px}.data thead{display:none}.data,.data tbody,.data tr,.data tbody th,.data td{display:block}.data tbody th,.data td,.data td.text{white-space:normal;max-width:none;padding:.1rem 0;overflow-wrap:anywhere}
   .data tbody th{font-weight:500;text-align:left;margin-top:.5rem}.data td{display:flex;justify-content:space-between;gap:1rem}.data td::before{content:attr(data-heading);color:#567;text-align:left;overflow-wrap:break-word}

@@ -71,18 +71,38 @@ std::string findings_of(const BlockSummary& block) {
     core::print(text, "\n{}: {}\n", block.block, block.question);
   }
   for (const MainResult& result : block.main_results) {
-    text << wrapped(in_words(result), 2);
+    text << wrapped(in_words(result, block.number_who_answered()), 2);
   }
   write_hypotheses_text(text, block.hypotheses);
   return text.str();
 }
 
-// Comparisons of blocks and groups before the blocks' own.
+// Those that there is room for.
+std::vector<std::string> first_findings(const ReportSection& section) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> first{section.findings.begin(),
+                                 section.findings.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                most, section.findings.size()))};
+  if (first.size() < section.findings.size()) {
+    first.emplace_back("the others stand in the tables");
+  }
+  return first;
+}
+
+std::string findings_of(const ReportSection& section) {
+  std::string text = section.findings.empty() ? "" : fmt::format("\n{}\n", section.title);
+  for (const std::string& finding : first_findings(section)) {
+    text += wrapped(finding, 2);
+  }
+  return text;
+}
+
+// The first of each: comparisons of blocks and groups whose findings are not told in words, blocks.
 std::vector<std::string> first_tables(const Summary& summary, std::size_t most_lines) {
   std::vector<std::string> tables;
   for (const ReportSection& section : summary.sections) {
     if (const std::string table = first_table(section, most_lines);
-        !section.is_detail && !table.empty()) {
+        !section.is_detail && section.findings.empty() && !table.empty()) {
       tables.push_back(fmt::format("\n{}\n{}", section.title, table));
     }
   }
@@ -108,6 +128,9 @@ void write_text_within(std::ostream& out, const Summary& summary, std::size_t li
   for (const auto& block : summary.blocks) {
     text << findings_of(*block);
   }
+  for (const ReportSection& section : summary.sections) {
+    text << findings_of(section);
+  }
   const std::string left =
       fmt::format("\nall {} lines: --all; figures and methods: report.html\n", all);
   std::string shown = text.str();
@@ -129,9 +152,12 @@ std::string heading_of(const BlockSummary& block) {
   return block.block.empty() ? "Answers" : escaped(block.block);
 }
 
-// Links to every part of the page, folded ones too, in its order.
+// Links to every part of the page, folded ones too, in its order; of several blocks folded, so that
+// the first figure is seen at once.
 void write_contents(std::ostream& out, const Summary& summary) {
-  out << "<nav class=contents aria-label=Contents><ul>\n";
+  const bool is_folded = summary.blocks.size() > 1;
+  out << "<nav class=contents aria-label=Contents>"
+      << (is_folded ? "<details><summary>Contents</summary>" : "") << "<ul>\n";
   for (const auto& block : summary.blocks) {
     core::print(out, "<li><a href=\"#{}\"><b>{}</b></a>{}</li>\n", escaped(block->anchor()),
                 heading_of(*block), block->details_links());
@@ -141,7 +167,7 @@ void write_contents(std::ostream& out, const Summary& summary) {
     core::print(out, " <a href=\"#study\"><b>The study as a whole</b></a>{}",
                 section_links(summary.sections, "study"));
   }
-  out << "</li></ul></nav>\n";
+  out << "</li></ul>" << (is_folded ? "</details>" : "") << "</nav>\n";
 }
 
 void write_body(std::ostream& body, const Summary& summary) {
@@ -214,6 +240,15 @@ std::string people_in_words(const Summary& summary) {
 }
 }  // namespace
 
+namespace {
+void write_findings_html(std::ostream& out, const ReportSection& section) {
+  if (!section.findings.empty()) {
+    core::print(out, "<p><b>{}</b> (exploratory): {}.</p>\n", escaped(section.title),
+                escaped_numbers(fmt::format("{}", fmt::join(first_findings(section), "; "))));
+  }
+}
+}  // namespace
+
 void write_html(std::ostream& out, const Summary& summary) {
   begin_page(out, summary.title);
   if (const std::string warning = banner(summary); !warning.empty()) {
@@ -221,6 +256,9 @@ void write_html(std::ostream& out, const Summary& summary) {
   }
   for (const auto& block : summary.blocks) {
     block->write_words_html(out, summary.participants);
+  }
+  for (const ReportSection& section : summary.sections) {
+    write_findings_html(out, section);
   }
   if (summary.participants > 0) {
     core::print(out, "<p class=note>{} {}</p>\n", people_in_words(summary),

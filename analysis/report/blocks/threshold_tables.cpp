@@ -395,6 +395,38 @@ Interval range_of_posteriors(const ThresholdResults& results, core::Psychometric
   }
   return thresholds.empty() ? Interval{} : range_of(thresholds, core::row_of(shape).is_logarithmic);
 }
+// A row a participant, from below; the lowest is left for the block's result.
+Chart overview_chart(const ThresholdResults& results, std::vector<double> places,
+                     bool is_logarithmic) {
+  constexpr double most_area = 0.4;
+  const auto people = static_cast<double>(results.participants.size());
+  Chart chart{"Thresholds, 95 %, of participants 1 to " + fmt::format("{}", people) +
+                  ", in the order of the table; a bar alone: beyond the levels; at 0, open: over "
+                  "participants",
+              "",
+              "threshold",
+              "participant",
+              {},
+              {-0.5, people + 0.5},
+              is_logarithmic};
+  chart.name = "thresholds";
+  double row = 0.0;
+  for (const ParticipantThreshold& person : results.participants) {
+    row += 1.0;
+    const auto reported = reported_threshold(person);
+    if (reported && (!is_logarithmic || reported->threshold > 0.0)) {
+      chart.points.push_back({reported->threshold, row, std::min(most_area, 8.0 / people)});
+      chart.bars.push_back({row, reported->interval});
+      places.push_back(reported->threshold);
+    } else if (const auto beyond = beyond_levels(person)) {
+      chart.bars.push_back({row, *beyond});
+    }
+  }
+  chart.alternative = fmt::format("Thresholds of {} participants, {} of whom lie beyond the levels",
+                                  people, chart.bars.size() - chart.points.size());
+  chart.x_range = range_of(places, is_logarithmic);
+  return chart;
+}
 }  // namespace
 
 std::vector<Chart> threshold_charts(const BlockDesign& design, const ThresholdResults& results) {
@@ -403,6 +435,9 @@ std::vector<Chart> threshold_charts(const BlockDesign& design, const ThresholdRe
   const Interval range = range_of(levels, is_logarithmic);
   const Interval thresholds = range_of_posteriors(results, design.shape);
   std::vector<Chart> charts;
+  if (results.participants.size() > 1) {
+    charts.push_back(overview_chart(results, levels, is_logarithmic));
+  }
   for (const ParticipantThreshold& person : results.participants) {
     if (!person.track.empty()) {
       charts.push_back(function_chart(person, design, range, is_logarithmic));

@@ -11,6 +11,7 @@
 #include "analysis/report/blocks/discrimination.hpp"
 #include "analysis/report/blocks/psychometric_levels.hpp"
 #include "analysis/report/document/sections.hpp"
+#include "analysis/report/document/wording.hpp"
 #include "analysis/statistics/detection/decision_model.hpp"
 #include "analysis/statistics/population/means.hpp"
 #include "analysis/statistics/quantiles.hpp"
@@ -370,10 +371,12 @@ namespace {
 // whom some are known to lie beyond the levels. Unset where its interval has an open end.
 std::optional<MainResult> with_those_beyond(MainResult result, const ThresholdResults& results) {
   std::vector<Interval> logarithms;
+  std::int64_t beyond = 0;
   for (const ParticipantThreshold& person : results.participants) {
     const auto threshold = likeliest_threshold(person);
     if (const auto range = beyond_levels(person)) {
       logarithms.push_back({std::log10(range->low), std::log10(range->high)});
+      ++beyond;
     } else if (threshold && *threshold > 0.0) {
       logarithms.push_back({std::log10(*threshold), std::log10(*threshold)});
     }
@@ -386,6 +389,7 @@ std::optional<MainResult> with_those_beyond(MainResult result, const ThresholdRe
   result.estimate = from_log(found.mean);
   result.range = {from_log(found.interval.low), from_log(found.interval.high)};
   result.people = static_cast<int>(logarithms.size());
+  result.of_whom = among_them(beyond, "beyond the levels");
   return result;
 }
 
@@ -401,6 +405,8 @@ std::optional<MainResult> mean_threshold(const VariedAxis& axis, const Threshold
     mean.estimate = of->threshold;
     mean.range = of->interval;
     mean.people = static_cast<int>(results.participants.size());
+    mean.of_whom = among_them(*mean.people - results.mean_log->participants,
+                              "without a threshold of their own (one fit of all)");
     return mean;
   }
   if (!results.mean_log) {
@@ -447,6 +453,11 @@ std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
   summary->personal = thresholds_of(design, results);
   if (const auto mean = mean_threshold(*design.axis, results)) {
     summary->main_results = {*mean};
+    if (results.participants.size() > 1) {
+      Chart& overview = summary->results().charts.front();
+      overview.points.push_back({mean->estimate, 0.0, 1.0, true});
+      overview.bars.push_back({0.0, mean->range});
+    }
   }
   return summary;
 }

@@ -25,6 +25,10 @@ void BlockSummary::write_text(std::ostream& out, std::size_t most_lines) const {
   }
 }
 
+int BlockSummary::number_who_answered() const {
+  return personal ? static_cast<int>(participants_of(*personal).size()) : 0;
+}
+
 std::string BlockSummary::anchor() const {
   return block.empty() ? "answers" : "block-" + block;
 }
@@ -32,7 +36,7 @@ std::string BlockSummary::anchor() const {
 namespace {
 // Empty: it is not known.
 std::string who_answered(const BlockSummary& block, int participants) {
-  const int known = block.personal ? static_cast<int>(participants_of(*block.personal).size()) : 0;
+  const int known = block.number_who_answered();
   const int answered = known > 0 ? known : participants;
   if (answered == 0) {
     return "";
@@ -63,7 +67,8 @@ void BlockSummary::write_words_html(std::ostream& out, int participants) const {
   std::vector<std::string> found;
   const std::size_t shown = std::min(main_results.size(), most_results);
   std::transform(main_results.begin(), main_results.begin() + static_cast<std::ptrdiff_t>(shown),
-                 std::back_inserter(found), [](const MainResult& one) { return in_words(one); });
+                 std::back_inserter(found),
+                 [&](const MainResult& one) { return in_words(one, number_who_answered()); });
   if (!found.empty()) {
     char& first = found.front().front();
     first = static_cast<char>(std::toupper(static_cast<unsigned char>(first)));
@@ -113,8 +118,16 @@ std::vector<ReportSection> details_of(const BlockSummary& block) {
 }
 }  // namespace
 
+// A matrix is the figure of its block; any other table comes after the figures.
 void BlockSummary::write_html(std::ostream& out) const {
-  write_contents_html(out, split(results()).first);
+  ReportSection first = split(results()).first;
+  const bool has_matrix = !first.tables.empty() && first.tables.front().is_matrix;
+  if (!has_matrix) {
+    ReportSection figures;
+    figures.charts.swap(first.charts);
+    write_contents_html(out, figures);
+  }
+  write_contents_html(out, first);
 }
 
 void BlockSummary::write_details_html(std::ostream& out) const {

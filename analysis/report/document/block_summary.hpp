@@ -77,6 +77,7 @@ struct MainResult {
   bool is_ratio{};                 // above 0, a geometric mean: studies are compared by the ratio
   // The range is by t of one degree of freedom less; unset: by the normal distribution.
   std::optional<int> people{};
+  std::string of_whom{};  // ", 2 of them beyond the levels"; empty: all have a value of their own
 };
 
 // The alternatives of a trial as they were visited one after the other, by position from 0.
@@ -118,7 +119,8 @@ class BlockSummary {
   nlohmann::ordered_json as_json() const;
   // The publications that the page cites here.
   std::set<core::Source> sources() const;
-  std::string anchor() const;  // of the results on the page
+  std::string anchor() const;       // of the results on the page
+  int number_who_answered() const;  // 0: it is not known
   // What the block was made to find out.
   ReportSection& results() { return sections.front(); }
   const ReportSection& results() const { return sections.front(); }

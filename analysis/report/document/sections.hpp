@@ -17,10 +17,11 @@ struct ReportSection {
   std::string title;
   std::vector<ReportTable> tables{};  // those without rows are left out for people
   std::vector<Chart> charts{};
-  std::vector<CitingText> remarks{};   // how it was computed, and what could not be
-  std::vector<Chart> folded_charts{};  // shown on demand
-  bool is_detail{};                    // for the page and files; not printed beside results
-  std::string name{};                  // by which it is asked for, where it is of a whole study
+  std::vector<CitingText> remarks{};    // how it was computed, and what could not be
+  std::vector<Chart> folded_charts{};   // shown on demand
+  bool is_detail{};                     // for the page and files; not printed beside results
+  std::string name{};                   // by which it is asked for, where it is of a whole study
+  std::vector<std::string> findings{};  // results in words, for the head of the page
   std::vector<std::string> terminal_lines{};  // results in words; in text only
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 namespace tapstudy::analysis {
 namespace {
 // As many digits of percent as the ends of an interval take to differ.
@@ -55,14 +56,42 @@ std::string finding_of(const HypothesisResult& result) {
                                 : result.finding;
 }
 
-std::string in_words(const MainResult& result) {
+std::string adjusted_in_words(double p, double p_holm, bool are_several) {
+  return p_value(p) +
+         (are_several ? fmt::format(", {} after {}", p_value(p_holm), "Holm 1979"_source) : "");
+}
+
+std::string among_them(std::int64_t number, std::string_view what) {
+  return number == 0 ? "" : fmt::format(", {} of them {}", number, what);
+}
+
+std::string people_in_words(std::int64_t number, std::int64_t took_part, std::int64_t beyond) {
+  const std::int64_t all = std::max(number, took_part);
+  const std::string of = number < all ? fmt::format(" of {}", all) : "";
+  return fmt::format("{}{} participant{}{}", number, of, all == 1 ? "" : "s",
+                     among_them(beyond, "beyond the levels"));
+}
+
+std::string contrast_in_words(double mean, const std::optional<Interval>& interval, bool is_ratio) {
+  if (std::isnan(mean)) {
+    return "by order alone";
+  }
+  const auto shown = [&](double value) { return rounded(is_ratio ? std::exp(value) : value); };
+  const std::string range =
+      interval ? fmt::format(", 95 % CI {} to {}", shown(interval->low), shown(interval->high))
+               : "";
+  return fmt::format("mean {} {}{}", is_ratio ? "ratio" : "difference", shown(mean), range);
+}
+
+std::string in_words(const MainResult& result, std::int64_t took_part) {
   const std::string value =
       result.chance ? fmt::format("{} (95 % CI {}, chance {})", percent(result.estimate),
                                   percent_range(result.range), percent(*result.chance))
                     : fmt::format("{} (95 % CI {} to {})", rounded(result.estimate),
                                   rounded(result.range.low), rounded(result.range.high));
-  return fmt::format("{} {}{}", result.name, value,
-                     result.people ? fmt::format(", of {} participants", *result.people) : "");
+  return fmt::format("{} {}{}{}", result.name, value,
+                     result.people ? ", of " + people_in_words(*result.people, took_part) : "",
+                     result.of_whom);
 }
 
 std::string p_value(const HypothesisResult& result) {

@@ -22,8 +22,18 @@ std::string p_value(double p);  // "p = .020", "p < .001"
 std::string p_value(const HypothesisResult& result);
 // "12/16 against 25 % by chance", or its finding.
 std::string finding_of(const HypothesisResult& result);
-// "accuracy 59 % (95 % CI 45–71 %, chance 25 %), of 10 participants"
-std::string in_words(const MainResult& result);
+// "p = .008, p = .024 after Holm 1979"; of a single test p alone.
+std::string adjusted_in_words(double p, double p_holm, bool are_several);
+// ", 2 of them beyond the levels"; empty for none.
+std::string among_them(std::int64_t number, std::string_view what);
+// "8 participants", "7 of 8 participants, 2 of them beyond the levels"
+std::string people_in_words(std::int64_t number, std::int64_t took_part, std::int64_t beyond = 0);
+// "mean ratio 1.9, 95 % CI 1.2 to 3.1", of ratios from natural logarithms; "by order alone" where
+// there is no mean.
+std::string contrast_in_words(double mean, const std::optional<Interval>& interval, bool is_ratio);
+// "accuracy 59 % (95 % CI 45–71 %, chance 25 %), of 10 participants"; took_part: in the block, 0
+// where it is not known.
+std::string in_words(const MainResult& result, std::int64_t took_part = 0);
 
 // "(95 % CI over 4 participants 14–92 %)"; where the mean of participants is not the share of all
 // answers together, "(mean of 4 participants 61 %, 95 % CI 14–92 %)"; without an interval it says

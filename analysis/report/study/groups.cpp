@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "analysis/report/document/wording.hpp"
 #include "analysis/statistics/population/independent_groups.hpp"
 #include "analysis/statistics/quantiles.hpp"
 #include "analysis/statistics/rank_tests.hpp"
@@ -92,8 +93,21 @@ std::vector<Cell> mean_cells(const GroupValues& values, bool is_ratio) {
           number(has_spread ? std::optional{spread} : std::nullopt)};
 }
 
+std::string in_words(const GroupValues& values) {
+  const std::ptrdiff_t beyond = std::ssize(values.all) - std::ssize(values.known);
+  return fmt::format("{} ({})", values.group->label,
+                     people_in_words(std::ssize(values.all), values.took_part, beyond));
+}
+
+std::string in_words(const Contrast& one, double p_holm, bool are_several) {
+  return fmt::format(
+      "{}, {} against {}: {}; {}", one.block->block, in_words(one.first), in_words(one.second),
+      contrast_in_words(one.result.difference, one.result.interval, one.block->personal->is_ratio),
+      adjusted_in_words(one.result.test.p, p_holm, are_several));
+}
+
 void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts,
-              ReportTable& table) {
+              ReportTable& table, std::vector<std::string>& findings) {
   std::vector<double> p;
   std::ranges::transform(contrasts, std::back_inserter(p),
                          [](const Contrast& contrast) { return contrast.result.test.p; });
@@ -106,6 +120,8 @@ void add_rows(const std::string& measure, const std::vector<Contrast>& contrasts
                                               one.block->personal->is_ratio),
                           people_in(one.first), people_in(one.second), probability(p[i]),
                           probability(adjusted[i])});
+    findings.push_back((i == 0 ? measure + ": " : "") +
+                       in_words(one, adjusted[i], contrasts.size() > 1));
   }
 }
 
@@ -178,11 +194,14 @@ std::optional<ReportSection> groups_section(
                                         interval_column("first - second (95 % CI)", "difference"));
   ReportTable ratios = empty_table("group_ratios", "Ratios between groups",
                                    interval_column("first / second (95 % CI)", "ratio"));
+  std::vector<std::string> findings;
   for (const auto& [measure, found] : contrasts) {
-    add_rows(measure, found, found.front().block->personal->is_ratio ? ratios : differences);
+    add_rows(measure, found, found.front().block->personal->is_ratio ? ratios : differences,
+             findings);
   }
   ReportSection section{"Groups compared", {means, differences, ratios}};
   section.name = study_sections::groups;
+  section.findings = std::move(findings);
   section.remarks.emplace_back(how_it_was_computed());
   return section;
 }

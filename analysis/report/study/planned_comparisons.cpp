@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -56,32 +57,26 @@ MeansByStimulus means_by_stimulus(const std::vector<AnswerRow>& answers) {
   return means;
 }
 
-std::string n_of_all(std::size_t number, std::size_t all) {
-  return number == all ? fmt::format("{} participants", number)
-                       : fmt::format("{} of {} participants", number, all);
-}
-
 HypothesisResult not_tested(const PlannedComparison& planned, const std::string& why) {
   return {planned.hypothesis, why, {}, 0.0, {}, 0.0};
 }
 
 HypothesisResult equivalence_of(const PlannedComparison& planned,
-                                const std::vector<Interval>& differences, std::size_t all,
+                                const std::vector<Interval>& differences, std::int64_t all,
                                 bool is_ratio) {
+  const std::int64_t ranges =
+      std::ranges::count_if(differences, [](const Interval& one) { return one.low < one.high; });
+  const std::string people = people_in_words(std::ssize(differences), all, ranges);
   if (differences.size() < 2) {
-    return not_tested(
-        planned, fmt::format("{} with both values are too few", n_of_all(differences.size(), all)));
+    return not_tested(planned, people + " with both values are too few");
   }
   const double bound = is_ratio ? std::log(planned.within) : planned.within;
   const EquivalenceTest test = equivalence_test(differences, bound);
   const auto shown = [&](double value) { return rounded(is_ratio ? std::exp(value) : value); };
   HypothesisResult result = not_tested(
       planned, fmt::format("two one-sided paired t tests{} against {} and {}; the larger p; {}",
-                           std::ranges::all_of(
-                               differences, [](const Interval& one) { return one.low == one.high; })
-                               ? ""
-                               : " by the likelihood, with those beyond the levels,",
-                           shown(-bound), shown(bound), n_of_all(differences.size(), all)));
+                           ranges == 0 ? "" : " by the likelihood, with those beyond the levels,",
+                           shown(-bound), shown(bound), people));
   result.p = test.p;
   result.finding =
       fmt::format("mean {} {}, 90 % CI {} to {}", is_ratio ? "ratio" : "difference",
@@ -100,7 +95,7 @@ HypothesisResult equivalent_stimuli(const PlannedComparison& planned,
       differences.push_back({difference, difference});
     }
   }
-  return equivalence_of(planned, differences, means.size(), false);
+  return equivalence_of(planned, differences, std::ssize(means), false);
 }
 
 HypothesisResult equivalent_blocks(const PlannedComparison& planned,
@@ -113,29 +108,19 @@ HypothesisResult equivalent_blocks(const PlannedComparison& planned,
     return not_tested(planned, "their values are compared by ratios: `within` is to be above 1");
   }
   return equivalence_of(planned, differences_between(*first, *second),
-                        static_cast<std::size_t>(number_in_both(*first, *second)), first->is_ratio);
+                        number_in_both(*first, *second), first->is_ratio);
 }
 
 HypothesisResult contrast_result(const PlannedComparison& planned, const PairedContrast& contrast,
-                                 const PersonalValues& values, std::size_t all,
+                                 const PersonalValues& values, std::int64_t all,
                                  const std::string& against) {
-  const auto shown = [&](double value) {
-    return rounded(values.is_ratio ? std::exp(value) : value);
-  };
   HypothesisResult result = not_tested(
       planned, fmt::format("permutation test by signs of participants' {} against {}, {}; {}",
                            values.is_ratio ? "logarithms of ratios" : "differences", against,
                            planned.below ? "one-sided" : "two-sided",
-                           n_of_all(static_cast<std::size_t>(contrast.participants), all)));
+                           people_in_words(contrast.participants, all, contrast.ranges)));
   result.p = contrast.p;
-  result.finding =
-      std::isnan(contrast.mean)
-          ? "by order alone: too few have a value"
-          : fmt::format(
-                "mean {} {}{}", values.is_ratio ? "ratio" : "difference", shown(contrast.mean),
-                contrast.interval ? fmt::format(", 95 % CI {} to {}", shown(contrast.interval->low),
-                                                shown(contrast.interval->high))
-                                  : "");
+  result.finding = contrast_in_words(contrast.mean, contrast.interval, values.is_ratio);
   return result;
 }
 
@@ -146,8 +131,7 @@ HypothesisResult different_blocks(const PlannedComparison& planned,
     return not_tested(planned, "the blocks have no values of one measure");
   }
   const auto contrast = contrast_of(*first, *second);
-  return contrast ? contrast_result(planned, *contrast, *first,
-                                    static_cast<std::size_t>(number_in_both(*first, *second)),
+  return contrast ? contrast_result(planned, *contrast, *first, number_in_both(*first, *second),
                                     "those of " + planned.other_block)
                   : not_tested(planned, "fewer than two participants have values of both");
 }
@@ -160,7 +144,7 @@ HypothesisResult below_level(const PlannedComparison& planned,
     return not_tested(planned, "fewer than two participants have values");
   }
   HypothesisResult result =
-      contrast_result(planned, *contrast, *values, participants_of(*values).size(),
+      contrast_result(planned, *contrast, *values, std::ssize(participants_of(*values)),
                       fmt::format("{}", rounded(*planned.below)));
   result.p = contrast->direction < 0.0 ? 0.5 * contrast->p : 1.0 - 0.5 * contrast->p;
   return result;
@@ -227,7 +211,7 @@ HypothesisResult interaction_of_factors(const PlannedComparison& planned, const 
   }
   if (tables.size() < 2) {
     return not_tested(planned, fmt::format("{} with all values are too few",
-                                           n_of_all(tables.size(), means.size())));
+                                           people_in_words(std::ssize(tables), std::ssize(means))));
   }
   const InteractionTest test = interaction_test(tables, seed_of_signs);
   const char* const scale = has_right_answers ? "shares of right answers" : "mean ratings";
@@ -235,7 +219,7 @@ HypothesisResult interaction_of_factors(const PlannedComparison& planned, const 
       planned, fmt::format("{}permutation test by signs of participants' interactions of {} and "
                            "{}, two-sided, on the scale of {}; {}",
                            test.is_exact ? "exact " : "", planned.factors[0], planned.factors[1],
-                           scale, n_of_all(tables.size(), means.size())));
+                           scale, people_in_words(std::ssize(tables), std::ssize(means))));
   result.p = test.p;
   result.finding = fmt::format("interaction of {} and {}, F({:g}, {:g}) = {}", planned.factors[0],
                                planned.factors[1], test.numerator_freedom, test.denominator_freedom,

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 
+#include "analysis/report/document/wording.hpp"
 #include "analysis/statistics/population/test_retest.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -76,6 +77,7 @@ struct RetestTables {
   ReportTable differences;
   ReportTable ratios;
   std::vector<CitingText> remarks{};  // about pairs of blocks
+  std::vector<std::string> findings{};
 };
 
 void add_row(const BlockSummary& first, const BlockSummary& second, RetestTables& tables) {
@@ -98,12 +100,16 @@ void add_row(const BlockSummary& first, const BlockSummary& second, RetestTables
                     "scale, where no change can be seen.",
                     named));
   }
+  const Cell correlation = correlation_cell(pair, named, tables.remarks);
+  const int in_both = number_in_both(of_first, *second.personal);
   (of_first.is_ratio ? tables.ratios : tables.differences)
-      .rows.push_back(
-          {word(of_first.measure), word(first.block), word(second.block),
-           difference_or_ratio(found.mean, found.mean_interval, of_first.is_ratio), limits,
-           correlation_cell(pair, named, tables.remarks),
-           people_known(std::ssize(pair.first), number_in_both(of_first, *second.personal))});
+      .rows.push_back({word(of_first.measure), word(first.block), word(second.block),
+                       difference_or_ratio(found.mean, found.mean_interval, of_first.is_ratio),
+                       limits, correlation, people_known(std::ssize(pair.first), in_both)});
+  tables.findings.push_back(
+      fmt::format("{}, from {} to {}: {}; ICC {}; {}", of_first.measure, first.block, second.block,
+                  contrast_in_words(found.mean, found.mean_interval, of_first.is_ratio),
+                  correlation.text.words, people_in_words(std::ssize(pair.first), in_both)));
 }
 
 ReportTable table_of_changes(const std::string& name, const std::string& title,
@@ -171,6 +177,7 @@ std::optional<ReportSection> retest_section(
   }
   ReportSection section{"Test and retest", {tables.differences, tables.ratios}};
   section.name = study_sections::retest;
+  section.findings = std::move(tables.findings);
   if (has_rows) {
     section.remarks.emplace_back(how_changes_were_computed());
   }

@@ -500,10 +500,16 @@ CensoredMean censored_mean(const std::vector<Interval>& differences, double conf
 PairedContrast censored_contrast(const std::vector<Interval>& differences, std::uint64_t seed) {
   const std::vector<double> ranks = signed_ranks(differences);
   const SignFlipTest test = sign_flip_test(ranks, seed);
-  PairedContrast result{std::nan(""),  {},
-                        test.p,        static_cast<int>(differences.size()),
-                        test.is_exact, std::accumulate(ranks.begin(), ranks.end(), 0.0)};
-  if (std::ranges::count_if(differences, is_exact) > 1) {
+  const auto exact = static_cast<int>(std::ranges::count_if(differences, is_exact));
+  const auto participants = static_cast<int>(differences.size());
+  PairedContrast result{std::nan(""),
+                        {},
+                        test.p,
+                        participants,
+                        test.is_exact,
+                        std::accumulate(ranks.begin(), ranks.end(), 0.0),
+                        participants - exact};
+  if (exact > 1) {
     constexpr double confidence = 0.95;
     const CensoredMean found = censored_mean(differences, confidence);
     result.mean = found.mean;

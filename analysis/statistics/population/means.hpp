@@ -96,6 +96,7 @@ struct PairedContrast {
   int participants{};
   bool is_exact{};     // p is of all sign patterns
   double direction{};  // what p is of, above or below 0: the mean, or the sum of signed ranks
+  int ranges{};        // of the participants, those of whom only a range is known
 };
 
 // The permutation test of paired differences (Fisher 1935): if the conditions do not matter, each

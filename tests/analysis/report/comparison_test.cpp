@@ -75,6 +75,9 @@ TEST_CASE("thresholds are compared by their geometric mean ratio, and all pairs 
   CHECK(std::get<double>(rows[0][5].values[0]) == Approx(2.0 / 256.0));  // all one sign, of 2^8
   CHECK(std::get<double>(rows[0][6].values[0]) == Approx(3.0 * 2.0 / 256.0));
   CHECK(std::get<double>(rows[2][5].values[0]) == 1.0);  // equal values
+  CHECK_THAT(section->findings.at(0), Contains("a against b: mean ratio 2, 95 % CI ") &&
+                                          Contains("; p = .008, p = .023 after Holm 1979; 8 "
+                                                   "participants"));
 }
 
 TEST_CASE("who lies beyond the levels takes part in a comparison, by order and by likelihood",
@@ -102,12 +105,18 @@ TEST_CASE("who lies beyond the levels takes part in a comparison, by order and b
   const std::vector<double> ratio = numbers(row[3]);
   CHECK(ratio[0] > 3.0);
   CHECK(ratio[1] > 1.0);
+  REQUIRE(section->findings.size() == 1);
+  CHECK_THAT(section->findings[0],
+             Contains("threshold: hard against easy: mean ratio ") &&
+                 Contains("; p = .008; 8 participants, 6 of them beyond the levels"));
   hard.beyond.erase("P7");
   hard.participants = {"P7"};
   blocks.clear();
   add(blocks, "hard", hard);
   add(blocks, "easy", easy);
-  CHECK(analysis::block_contrasts(blocks, false)->tables[1].rows.at(0)[4].text == "7 of 8");
+  const auto of_seven = analysis::block_contrasts(blocks, false);
+  CHECK(of_seven->tables[1].rows.at(0)[4].text == "7 of 8");
+  CHECK_THAT(of_seven->findings[0], Contains("; 7 of 8 participants, 5 of them beyond the levels"));
 }
 
 TEST_CASE("a part is compared with the other parts of its block, and nothing with nothing",

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "analysis/report/document/wording.hpp"
 #include "analysis/report/writers.hpp"
 #include "analysis/statistics/detection/decision_model.hpp"
 #include "analysis/statistics/psychometric/inference.hpp"
@@ -273,6 +274,19 @@ TEST_CASE("where somebody has no threshold the block's result is of the fit of a
   CHECK(population["threshold"] < formats.json["pooled"][0]["threshold"]);
   CHECK(result_of(answers) == population["threshold"].get<double>());
   CHECK(formats.json["population_participants"].size() == 4);
+  const auto whole = summarise_thresholds(design_of(), {answers, {}});
+  CHECK_THAT(in_words(whole->main_results.at(0), whole->number_who_answered()),
+             Contains(", of 4 participants, 1 of them without a threshold of their own"));
+  const Chart& overview = whole->results().charts.at(0);
+  CHECK(overview.name == "thresholds");
+  CHECK(overview.bars.size() == 5);    // the fourth participant's alone, and the block's
+  CHECK(overview.points.size() == 4);  // of which one is the block's
+  CHECK(overview.points.back().x == whole->main_results.at(0).estimate);
+  MainResult of_three = whole->main_results.at(0);
+  of_three.people = 3;
+  of_three.of_whom = "";
+  CHECK_THAT(in_words(of_three, whole->number_who_answered()),
+             Catch::Matchers::EndsWith("), of 3 of 4 participants"));
   CHECK_THAT(formats.text, Contains("which biases it; the fit"));
 }
 

@@ -78,6 +78,9 @@ TEST_CASE("who lies beyond the levels is in the test of groups, and no mean is m
   REQUIRE(section);
   CHECK(section->tables[0].rows[0][4].text == "–");
   CHECK(section->tables[0].rows[1][3].text == "3 of 4");
+  CHECK_THAT(section->findings.at(0),
+             Contains("test, trained (3 participants, 1 of them beyond the levels) against "
+                      "untrained (3 of 4 participants): by order alone; p = "));
   const auto& rows = section->tables[2].rows;
   REQUIRE(rows.size() == 1);
   CHECK(value(rows[0][5]) == 3.0);

@@ -113,7 +113,7 @@ TEST_CASE("blocks are equivalent by ratios where they measure ratios",
   const HypothesisResult found = study.test(planned);
   REQUIRE(found.p);
   CHECK_THAT(found.test, Contains("with those beyond the levels, against 0.8 and 1.25") &&
-                             Contains("4 participants"));
+                             Contains("4 participants, 1 of them beyond the levels"));
   const EquivalenceTest of_three = equivalence_test(
       std::vector{std::log(0.10 / 0.11), std::log(0.20 / 0.19), std::log(0.30 / 0.31)},
       std::log(1.25));
@@ -144,7 +144,8 @@ TEST_CASE("a claim about thresholds is tested of all, also of those beyond the l
   const HypothesisResult differ = study.test({{"other", "", ""}, {}, "", "second", 0.0, {}});
   REQUIRE(differ.p);
   CHECK(*differ.p == Approx(2.0 / 256.0));
-  CHECK_THAT(differ.test, Contains("two-sided") && Contains("; 8 participants"));
+  CHECK_THAT(differ.test,
+             Contains("two-sided") && Contains("; 8 participants, 6 of them beyond the levels"));
   const HypothesisResult below = study.test({{"fine", "", ""}, {}, "", "", 0.0, 0.16});
   REQUIRE(below.p);
   CHECK(*below.p == Approx(1.0 / 256.0));

@@ -52,6 +52,9 @@ TEST_CASE("a block done again is held against the first of those who did both",
   CHECK(number_of(row[5], 0) == Approx(intraclass_correlation({first, second})->value));
   CHECK(std::get<std::int64_t>(row[6].values[0]) == 3);
   CHECK(section->tables[1].rows.empty());
+  CHECK_THAT(section->findings.at(0),
+             Contains("share, from test.day_1 to test.day_2: mean difference 0.125, 95 % CI ") &&
+                 Contains("; ICC ") && Contains("; 3 participants"));
 }
 
 TEST_CASE("thresholds of two sessions are compared by their ratio", "[analysis][report][retest]") {

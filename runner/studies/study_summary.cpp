@@ -667,7 +667,11 @@ std::optional<analysis::ReportSection> mixed_models(const protocols::Protocol& p
                                                     const Summary& summary) {
   const auto data =
       fit ? mixed_models_data(protocol, all.answers, summary.blocks, all.sessions) : std::nullopt;
-  return data ? analysis::mixed_models_section(fit(*data)) : std::nullopt;
+  if (!data) {
+    return std::nullopt;
+  }
+  const Progress progress{"fitting mixed models in R"};
+  return analysis::mixed_models_section(fit(*data));
 }
 
 // They stand before the other sections: groups first, then blocks, test and retest, mixed models.
@@ -733,9 +737,11 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
     return analysis::summarise(design, all.answers, all.visits, all.presentations);
   }
   leave_out_unwanted(wanted, all.answers, design);
-  Progress progress{"blocks summarised"};
-  design.count = progress.count();
-  Summary summary = analysis::summarise(design, all.answers, all.visits, all.presentations);
+  Summary summary = [&] {
+    Progress progress{"blocks summarised"};
+    design.count = progress.count();
+    return analysis::summarise(design, all.answers, all.visits, all.presentations);
+  }();
   const DoneBlocks done = done_blocks(stores, mode);
   summary.sections = sections_of(protocol, stores, mode, done, wanted, tracks);
   add_comparisons(protocol, all, fit_mixed_models, wanted, summary);

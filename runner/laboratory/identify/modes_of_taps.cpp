@@ -73,10 +73,16 @@ double median_duration_s(const std::vector<IdentifiedTap>& taps) {
   return analysis::quantile(durations_s, 0.5);
 }
 
+// Where modes are sought in a band at the lowest, whatever it begins with.
+double sought_from_hz(const analysis::Band& band) {
+  return std::min(default_low_hz, band.low_hz);
+}
+
 // What the taps move below the band, where the first modes of a slender body may lie: unset where
 // it has little energy, or as much at rest.
-std::optional<analysis::EnergyOutside> motion_below(double begins_hz,
+std::optional<analysis::EnergyOutside> motion_below(const analysis::Band& band,
                                                     const std::vector<IdentifiedTap>& taps) {
+  const double begins_hz = sought_from_hz(band);
   const double lowest_hz = analysis::min_periods / median_duration_s(taps);
   if (!(lowest_hz < begins_hz)) {
     return std::nullopt;
@@ -92,8 +98,8 @@ analysis::Band modal_band(const TapQuestion& question, const std::vector<Identif
                           std::optional<double> band_limit_hz, std::vector<std::string>& remarks) {
   const std::vector<analysis::FreeDecay> decays = decays_of(taps);
   const analysis::Band band = band_sought(question, decays, band_limit_hz);
-  const double begins_hz = std::min(default_low_hz, band.low_hz);
-  if (const auto slow = motion_below(begins_hz, taps)) {
+  const double begins_hz = sought_from_hz(band);
+  if (const auto slow = motion_below(band, taps)) {
     remarks.push_back(fmt::format(
         "{:.0f} % of the taps' energy lies below {:g} Hz, where the band begins, most of it near "
         "{:.3g} Hz: modes there are not sought (--band)",
@@ -379,7 +385,7 @@ std::vector<analysis::RepeatedMode> modes_beside(const std::vector<analysis::Ton
   analysis::tell_of_tones(tones, median_duration_s(taps), modes);
   analysis::judge_certainty(median_duration_s(taps), modes);
   if (is_one_impact(taps)) {
-    const auto slow = motion_below(std::min(default_low_hz, band.low_hz), taps);
+    const auto slow = motion_below(band, taps);
     analysis::judge_single_decay(taps.size(), slow ? slow->peak_hz : 0.0, modes);
   }
   analysis::mark_combinations(modes, derivatives_of(quantity), likeness_over_sensors(taps, modes));

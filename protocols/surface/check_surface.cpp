@@ -119,7 +119,7 @@ Mesh mesh_of(const TriangleSurface& surface) {
   return mesh;
 }
 
-// Open ones enclose nothing.
+// Open ones enclose nothing, and those that cross are not one within the other.
 bool has_nested_pieces(const Mesh& mesh) {
   if (!CGAL::is_closed(mesh)) {
     return false;
@@ -131,7 +131,7 @@ bool has_nested_pieces(const Mesh& mesh) {
   pmp::volume_connected_components(mesh, volume_of,
                                    CGAL::parameters::nesting_levels(std::ref(levels))
                                        .do_orientation_tests(false)
-                                       .do_self_intersection_tests(false));
+                                       .do_self_intersection_tests(true));
   return std::ranges::any_of(levels, [](std::size_t level) { return level > 0; });
 }
 

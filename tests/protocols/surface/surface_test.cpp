@@ -527,6 +527,10 @@ TEST_CASE("a surface that encloses no body is refused with what and where", "[co
   CHECK_THROWS_WITH(check_surface(testing::joined_surfaces(box, inner)), Contains("cavity"));
   inner.triangles.col(1).swap(inner.triangles.col(2));  // facing into the cavity
   CHECK_THROWS_WITH(check_surface(testing::joined_surfaces(box, inner)), Contains("cavity"));
+  // Its top lies inside, and its bottom comes out.
+  const core::TriangleSurface crossing = shifted(inner, {0.0, 0.0, -0.5 * around.size_m().z()});
+  CHECK_THROWS_WITH(check_surface(testing::joined_surfaces(box, crossing)),
+                    Contains("several pieces") && !Contains("cavity"));
   CHECK_THROWS_WITH(check_surface(testing::box_surface({600.0, 600.0, 50.0})),
                     Contains("600") && Contains("metres_per_unit"));
 

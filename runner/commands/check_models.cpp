@@ -5,15 +5,18 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "core/geometry/smooth_normals.hpp"
 #include "core/model/cubic_elements.hpp"
 #include "core/model/element_order.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 #include "core/model/progress.hpp"
+#include "core/model/shells/sheet_body.hpp"
 #include "core/model/shells/shell_elements.hpp"
 #include "core/techniques/compensated.hpp"
 #include "core/techniques/technique.hpp"
@@ -288,8 +291,9 @@ std::string describe_surfaces(const protocols::Protocol& protocol) {
 
 namespace {
 // Of the plate that is tapped, or of a body that it touches, from 1.
-const core::Meshing& mesh_of(const protocols::PresentedStimulus& stimulus, std::size_t body) {
-  return body == 0 ? stimulus.plate->mesh : stimulus.contacts->bodies.at(body - 1).mesh;
+const core::Plate& plate_of(const protocols::PresentedStimulus& stimulus, std::size_t body) {
+  return body == 0 ? static_cast<const core::Plate&>(*stimulus.plate)
+                   : stimulus.contacts->bodies.at(body - 1);
 }
 std::string name_of(const protocols::PresentedStimulus& stimulus, std::size_t body) {
   return body == 0 ? stimulus.name
@@ -302,7 +306,7 @@ std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
                              const core::ModelReport& report) {
   std::string lines;
   for (std::size_t i = 0; i < report.bodies.size(); ++i) {
-    const core::Meshing& mesh = mesh_of(stimulus, i);
+    const core::Meshing& mesh = plate_of(stimulus, i).mesh;
     if (!mesh.is_automatic && mesh.order == core::chosen_order && report.bodies[i].order == 1) {
       lines += fmt::format(
           "  warning: {} has linear elements, as quadratic ones would have more than {} unknowns: "
@@ -323,6 +327,26 @@ std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
       lines += fmt::format(
           "  note: {} is meshed with radius_edge_ratio: {}, as {} takes too many elements\n",
           name_of(stimulus, i), ratio.used, ratio.asked);
+    }
+  }
+  return lines;
+}
+
+std::size_t folds_of(const protocols::PresentedStimulus& stimulus, std::size_t body) {
+  const auto* const solid = std::get_if<core::Solid>(&plate_of(stimulus, body).shape);
+  return solid != nullptr && solid->sheet() ? core::folds_of(*solid->sheet()) : 0;
+}
+
+std::string note_of_folds(const protocols::PresentedStimulus& stimulus) {
+  const std::size_t bodies = 1 + (stimulus.contacts ? stimulus.contacts->bodies.size() : 0);
+  std::string lines;
+  for (std::size_t i = 0; i < bodies; ++i) {
+    if (const std::size_t folds = folds_of(stimulus, i); folds > 0) {
+      lines += fmt::format(
+          "  note: {} is folded along {} of its triangles, where neighbours turn by more than "
+          "{:.0f} degrees (a sheet that is curved there takes smaller triangles)\n",
+          name_of(stimulus, i), counted(folds, "edge"),
+          core::SmoothNormals::sharp_above_rad * 180.0 / std::numbers::pi);
     }
   }
   return lines;

@@ -42,6 +42,12 @@ std::string warning_of_order(const protocols::PresentedStimulus& stimulus,
 // and why.
 std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
                                const core::ModelReport& report);
+// A line for each sheet by its middle that is folded: along how many edges, as a curved one is,
+// too, whose triangles are wide.
+std::string note_of_folds(const protocols::PresentedStimulus& stimulus);
+// The edges at which the surface of the plate that is tapped, or of a body that it touches, from 1,
+// is folded; 0 where that is no sheet.
+std::size_t folds_of(const protocols::PresentedStimulus& stimulus, std::size_t body);
 // "445 linear tetrahedra"; "8 shell elements".
 std::string describe_elements(const core::ModelReport& report);
 // One line about the discretisation error of a model's frequencies.

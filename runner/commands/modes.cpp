@@ -96,10 +96,12 @@ void print_json(const protocols::Protocol& protocol, const protocols::PresentedS
   json["nodes"] = report.nodes;
   json["elements"] = report.tets;
   json["dof"] = report.dofs;
-  for (const core::MeshedBody& body : report.bodies) {
+  for (std::size_t i = 0; i < report.bodies.size(); ++i) {
+    const core::MeshedBody& body = report.bodies[i];
     json["bodies"].push_back({{"element_order", body.order},
                               {"radius_edge_ratio", body.radius_edge_ratio.used},
-                              {"radius_edge_ratio_asked", body.radius_edge_ratio.asked}});
+                              {"radius_edge_ratio_asked", body.radius_edge_ratio.asked},
+                              {"folded_edges", folds_of(stimulus, i)}});
   }
   json["rigid_body_modes"] = report.rigid_body_modes;
   json["modes_in_band_by_inertia"] = report.counted_in_band;
@@ -186,8 +188,8 @@ void print_table(const protocols::PresentedStimulus& stimulus, const core::Plate
   if (!is_beam) {
     print_completeness(report, spec.band_limit_hz);
     fmt::print("  {}\n", describe_errors(errors));
-    fmt::print("{}{}{}", note_of_relaxation(stimulus, report), warning_of_order(stimulus, report),
-               warning_of_errors(stimulus.name, errors));
+    fmt::print("{}{}{}{}", note_of_folds(stimulus), note_of_relaxation(stimulus, report),
+               warning_of_order(stimulus, report), warning_of_errors(stimulus.name, errors));
   }
 }
 

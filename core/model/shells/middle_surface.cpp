@@ -253,7 +253,7 @@ namespace {
 // One round of division: a new point in the middle of each long edge.
 class Division {
  public:
-  Division(const MiddleSurface& surface, double longest_m, const std::vector<Ball>& balls)
+  Division(const MiddleSurface& surface, double longest_m, const std::vector<FilledRegion>& regions)
       : curved_{surface}, surface_{surface} {
     for (const auto& point : surface.facets.points_m.rowwise()) {
       points_m_.emplace_back(point);
@@ -261,8 +261,9 @@ class Division {
     const TriangleTree tree{surface.facets};
     for (Eigen::Index triangle = 0; triangle < surface.facets.triangles.rows(); ++triangle) {
       double allowed_m = longest_m;
-      for (const Ball& ball : balls) {
-        allowed_m = std::min(allowed_m, allowed_near_m(ball, triangle, tree));
+      for (const FilledRegion& region : regions) {
+        const double away_m = std::max(0.0, distance_m(region, triangle, tree));
+        allowed_m = std::min(allowed_m, 0.5 * region.width_m + away_m);
       }
       mark_longer(triangle, allowed_m);
     }
@@ -300,14 +301,26 @@ class Division {
  private:
   static constexpr int none = -1;
 
-  double allowed_near_m(const Ball& ball, Eigen::Index triangle, const TriangleTree& tree) const {
-    const auto shares = tree.barycentric(static_cast<int>(triangle), ball.at_m);
-    Vec3 nearest_m = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) {
-      nearest_m += shares.at(static_cast<std::size_t>(k)) * corner_m(triangle, k);
+  // Between two convex sets, by projections onto one and the other in turn (Cheney & Goldstein
+  // 1959, Proximity maps for convex sets); less than 0 inside what is rounded.
+  double distance_m(const FilledRegion& region, Eigen::Index triangle,
+                    const TriangleTree& tree) const {
+    constexpr int projections = 10;
+    Vec3 in_box_m = 0.5 * (region.low_m + region.high_m);
+    Vec3 in_triangle_m;
+    for (int i = 0; i < projections; ++i) {
+      in_triangle_m = nearest_m(triangle, in_box_m, tree);
+      in_box_m = in_triangle_m.cwiseMax(region.low_m).cwiseMin(region.high_m);
     }
-    const double half_m = 0.5 * ball.radius_m;
-    return std::max(half_m, (nearest_m - ball.at_m).norm() - half_m);
+    return (in_triangle_m - in_box_m).norm() - region.rounding_m;
+  }
+  Vec3 nearest_m(Eigen::Index triangle, const Vec3& to_m, const TriangleTree& tree) const {
+    const auto shares = tree.barycentric(static_cast<int>(triangle), to_m);
+    Vec3 at_m = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      at_m += shares.at(static_cast<std::size_t>(k)) * corner_m(triangle, k);
+    }
+    return at_m;
   }
   Vec3 corner_m(Eigen::Index triangle, int k) const {
     return points_m_[static_cast<std::size_t>(surface_.facets.triangles(triangle, k))];
@@ -386,8 +399,8 @@ class Division {
 };
 }  // namespace
 
-MiddleSurface divided(MiddleSurface surface, double longest_m, const std::vector<Ball>& balls,
-                      Eigen::Index most) {
+MiddleSurface divided(MiddleSurface surface, double longest_m,
+                      const std::vector<FilledRegion>& regions, Eigen::Index most) {
   for (;;) {
     if (surface.facets.triangles.rows() > most) {
       throw ModelError{fmt::format(
@@ -395,7 +408,7 @@ MiddleSurface divided(MiddleSurface surface, double longest_m, const std::vector
           "larger shell_width_m, or a surface of fewer triangles)",
           longest_m, most)};
     }
-    std::optional<MiddleSurface> next = Division{surface, longest_m, balls}.divided();
+    std::optional<MiddleSurface> next = Division{surface, longest_m, regions}.divided();
     if (!next) {
       return surface;
     }

@@ -54,13 +54,17 @@ class CurvedTriangles {
   std::vector<std::array<Vec3, 10>> controls_m_;
 };
 
-struct Ball {
-  Vec3 at_m;
-  double radius_m{};
+// What is within `rounding_m` of a box along the axes, to be filled with nodes: a ball is a point
+// rounded by its radius.
+struct FilledRegion {
+  Vec3 low_m;
+  Vec3 high_m;
+  double rounding_m{};
+  double width_m{};  // twice its area in a plane over its perimeter there: of a ball its radius
 };
-// Triangles divided until no edge is longer, nor longer than half of a ball's radius within it, and
-// little by little more around it, so that the nodes in the ball fill it; the smooth surface stays,
-// but for what cubic patches approximate. Throws ModelError beyond `most` triangles.
-MiddleSurface divided(MiddleSurface surface, double longest_m, const std::vector<Ball>& balls,
-                      Eigen::Index most);
+// Triangles divided until no edge is longer, nor longer than half of a region's width within it,
+// and little by little more around it, so that the nodes in the region fill it; the smooth surface
+// stays, but for what cubic patches approximate. Throws ModelError beyond `most` triangles.
+MiddleSurface divided(MiddleSurface surface, double longest_m,
+                      const std::vector<FilledRegion>& regions, Eigen::Index most);
 }  // namespace tapstudy::core

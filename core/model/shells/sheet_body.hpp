@@ -6,6 +6,9 @@ namespace tapstudy::core {
 // SmoothNormals::sharp_above_rad. Throws ModelError where it is folded back on itself.
 Solid sheet_body(TriangleSurface middle, double thickness_m);
 
+// The edges of its triangles at which it is folded.
+std::size_t folds_of(const Sheet& sheet);
+
 // Triangles of a sheet that are modelled: 48 unknowns each.
 inline constexpr int max_sheet_triangles = 6000;
 }  // namespace tapstudy::core

@@ -208,20 +208,37 @@ void add_springs_to(const std::vector<SpringSupport>& springs, DiscreteBody& bod
   body.matrices.K += SparseMatrix{left.triangularView<Eigen::Lower>()};
 }
 
+// Balls and boxes, of these what is beside the body left out; not lines and points. A box is as
+// wide as its largest side; a strip of more than 25 times its width, which thousands of triangles
+// would fill, counts as wider.
+std::vector<FilledRegion> filled(const std::vector<Fixation>& regions, const Bounds& body) {
+  constexpr double longest_strip = 25.0;
+  std::vector<FilledRegion> all;
+  for (const Fixation& region : regions) {
+    if (region.shape == RegionShape::ball) {
+      all.push_back({region.at_m, region.at_m, region.radius_m, region.radius_m});
+    } else if (region.shape == RegionShape::box) {
+      const Vec3 low_m = region.low_m.cwiseMax(body.low_m);
+      const Vec3 high_m = region.high_m.cwiseMin(body.high_m);
+      Vec3 size_m = high_m - low_m;
+      std::ranges::sort(size_m);
+      if (size_m.y() > body.snap_m()) {
+        const double width_m = size_m.y() * size_m.z() / (size_m.y() + size_m.z());
+        all.push_back({low_m, high_m, 0.0, std::max(width_m, size_m.z() / longest_strip)});
+      }
+    }
+  }
+  return all;
+}
+
 // The middle of a plate, or of a sheet whose triangles are divided to the width of the elements.
 MiddleSurface middle_of(const Plate& plate, const std::vector<Fixation>& regions) {
   const double width_m = plate.mesh.shell_width_m.value();
   if (const auto* const box = std::get_if<Box>(&plate.shape)) {
     return {triangulated(*box, width_m, regions), {}};
   }
-  std::vector<Ball> balls;
-  for (const Fixation& region : regions) {
-    if (region.shape == RegionShape::ball) {
-      balls.push_back({region.at_m, region.radius_m});
-    }
-  }
-  return divided(middle_surface(std::get<Solid>(plate.shape).sheet()->middle), width_m, balls,
-                 max_sheet_triangles);
+  return divided(middle_surface(std::get<Solid>(plate.shape).sheet()->middle), width_m,
+                 filled(regions, bounds(plate.shape)), max_sheet_triangles);
 }
 
 // Without the points that are no corners of it.
@@ -276,6 +293,10 @@ Solid sheet_body(TriangleSurface middle, double thickness_m) {
   const MiddleSurface surface = middle_surface(middle);
   const TetMesh mesh = layered(lattice_on(CurvedTriangles{surface}, shell_order), thickness_m);
   return {corners_of_surface(mesh), Sheet{std::move(middle), thickness_m}};
+}
+
+std::size_t folds_of(const Sheet& sheet) {
+  return middle_surface(sheet.middle).folds.size();
 }
 
 DiscreteBody shell_body(const Plate& plate, const Material& material, int order,

@@ -496,6 +496,13 @@ TEST_CASE(
 }
 
 namespace {
+Fixation box_round(const Fixation& ball) {
+  Fixation box;
+  box.shape = RegionShape::box;
+  box.low_m = ball.at_m - Vec3::Constant(ball.radius_m);
+  box.high_m = ball.at_m + Vec3::Constant(ball.radius_m);
+  return box;
+}
 PlateSpec bowl_on_ball(int rings, double radius_m) {
   PlateSpec sheet = bent(without_points(bowl(0.08, 1.1, rings)), 0.0015, 340.0);
   sheet.fixations = {ball_at({0.0, 0.0, -0.08}, radius_m)};
@@ -503,27 +510,36 @@ PlateSpec bowl_on_ball(int rings, double radius_m) {
 }
 }  // namespace
 
-TEST_CASE("a sheet is held by all of a small ball, however wide its triangles are",
+TEST_CASE("a sheet is held by all of a small ball or box, however wide its triangles are",
           "[core][model][bent]") {
-  const double coarse_hz = build_plate_model(bowl_on_ball(3, 0.006)).modal.frequency_hz[0];
-  const double fine_hz = build_plate_model(bowl_on_ball(5, 0.006)).modal.frequency_hz[0];
-  CHECK(coarse_hz == Approx(fine_hz).epsilon(0.04));
+  const bool is_box = GENERATE(false, true);
+  CAPTURE(is_box);
+  const auto first_hz = [&](int rings) {
+    PlateSpec sheet = bowl_on_ball(rings, 0.006);
+    if (is_box) {
+      sheet.fixations[0] = box_round(sheet.fixations[0]);
+    }
+    sheet.band_limit_hz = 500.0;
+    return build_plate_model(sheet).modal.frequency_hz[0];
+  };
+  CHECK(first_hz(3) == Approx(first_hz(5)).epsilon(0.04));
 }
 
 TEST_CASE("a region of which a sheet's nodes span but a part is told", "[core][model][bent]") {
   PlateSpec sheet = bowl_on_ball(3, 0.006);
-  Fixation& foot = sheet.fixations[0];
+  Fixation& held = sheet.fixations[0];
   const auto told = [&] {
     const DiscreteBody body = discretised(sheet, sheet_steel, {}, {}, {});
     return held_in_part(body.mesh, sheet.shape, sheet.fixations);
   };
   CHECK(told().empty());
-  foot.shape = RegionShape::box;
-  foot.low_m = foot.at_m - Vec3::Constant(0.006);
-  foot.high_m = foot.at_m + Vec3::Constant(0.006);
+  held = box_round(held);
+  CHECK(told().empty());
+  // A band at the rim, which is 0.036 m below the middle of the sphere.
+  held.low_m = {-1.0, -1.0, -0.0385};
+  held.high_m = {1.0, 1.0, 0.0};
   REQUIRE(told().size() == 1);
-  CHECK_THAT(told().front(),
-             Contains("fixation 1, the box") && Contains("3 nodes, which span 0 of"));
+  CHECK_THAT(told().front(), Contains("fixation 1, the box") && Contains("nodes, which span"));
 }
 
 TEST_CASE("narrower shells divide a sheet's triangles and leave its frequencies and its folds",

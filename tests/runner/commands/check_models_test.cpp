@@ -115,3 +115,41 @@ TEST_CASE("check names the real plates whose models simulate builds beside those
                "the real plates that simulated participants remember: acrylic_two, "
                "mdf_three, mdf_two\n"));
 }
+
+TEST_CASE("modes and check say along how many edges a sheet is folded: a box without a lid has 8",
+          "[end_to_end][check]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "study.yaml";
+  testing::write(directory / "box.off",
+                 "OFF\n8 5 0\n0 0 0\n200 0 0\n200 150 0\n0 150 0\n0 0 100\n200 0 100\n"
+                 "200 150 100\n0 150 100\n4 0 3 2 1\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  testing::write(directory / "sheet.off",
+                 "OFF\n4 1 0\n0 0 0\n200 0 0\n200 150 0\n0 150 0\n4 0 1 2 3\n");
+  testing::write(file, R"(format: tapstudy/1
+title: A box
+finger: {mass_kg: 0.0058, stiffness_n_per_m: 300, damping_n_s_per_m: 3}
+rendering: {rate_hz: 4000, penalty_stiffness_n_per_m: 3000, band_limit_hz: 200, integrator: exact}
+placement: {origin_m: [0, 0, 0], lateral_scale: 1}
+materials:
+  steel: {youngs_modulus_pa: 2.1e11, density_kg_per_m3: 7850, poissons_ratio: 0.3, damping: {ratio: 0.01}}
+plates:
+  box:
+    surface: {file: box.off, metres_per_unit: 0.001, thickness_m: 0.001}
+    fixations: []
+  sheet:
+    surface: {file: sheet.off, metres_per_unit: 0.001, thickness_m: 0.001}
+    fixations: []
+tapping_points_m: {middle: [0.1, 0.07]}
+stimuli:
+  box: {plate: box, material: steel, technique: fem-coupled}
+  sheet: {plate: sheet, material: steel, technique: fem-coupled}
+blocks:
+  - {name: which, task: identification, question: Which, stimuli: [box, sheet]}
+)");
+  const std::string note = "note: box is folded along 8 edges of its triangles";
+  const auto modes = testing::tapstudy({"modes", file, "--stimulus", "box"});
+  INFO(modes.standard_error);
+  CHECK_THAT(modes.standard_output, Contains(note));
+  const std::string checked = testing::tapstudy({"check", file}).standard_output;
+  CHECK_THAT(checked, Contains(note) && !Contains("sheet is folded"));
+}

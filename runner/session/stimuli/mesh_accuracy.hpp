@@ -27,8 +27,8 @@ struct AutomaticMesh {
 };
 inline constexpr double least_accuracy = 0.002;
 
-// What `mesh: auto` asks for in this study, by its stimuli at their own values, solved to the usual
-// accuracy first. nullopt: a body is missing.
+// What `mesh: auto` asks for in this study, by its stimuli at their own values; where there are
+// different bodies, these are solved to the usual accuracy first. nullopt: one is missing.
 std::optional<AutomaticMesh> automatic_mesh(const protocols::Protocol& protocol,
                                             const FindBody& find);
 bool has_automatic_mesh(const protocols::Protocol& protocol);

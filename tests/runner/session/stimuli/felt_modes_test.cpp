@@ -109,3 +109,22 @@ TEST_CASE("an automatic mesh is asked for a tenth of the smallest difference tha
   };
   CHECK(!runner::automatic_mesh(protocol, none));
 }
+
+TEST_CASE(
+    "an automatic mesh is asked for the usual accuracy of one body, which is not solved for it",
+    "[runner][stimuli][mesh_accuracy]") {
+  protocols::Protocol protocol = runner::shipped_protocol("protocols/recommended/forces.yaml");
+  const auto plate = protocol.stimuli.front().plate;
+  std::erase_if(protocol.stimuli, [&](const auto& stimulus) { return stimulus.plate != plate; });
+  REQUIRE(protocol.stimuli.size() > 1);
+  int asked = 0;
+  const auto find = [&](const protocols::PresentedStimulus&, double) {
+    ++asked;
+    return std::shared_ptr<const core::BodyModes>{};
+  };
+  const auto mesh = runner::automatic_mesh(protocol, find);
+  CHECK(asked == 0);
+  REQUIRE(mesh);
+  CHECK(mesh->accuracy == core::usual_accuracy);
+  CHECK(!mesh->difference);
+}

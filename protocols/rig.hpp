@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/haptics/haptic_state.hpp"
+#include "core/settings/actuator_settings.hpp"
 #include "core/settings/audio_settings.hpp"
 #include "core/settings/device_settings.hpp"
 #include "core/settings/render_settings.hpp"
@@ -40,11 +41,12 @@ struct Rig {
   std::optional<double> vibration_band_hz;  // the highest frequency that the device renders
   std::shared_ptr<const core::DeviceResponse> vibration_response;  // null: not measured
   core::RealtimeRequest realtime;
-  double max_late_s{0.0};                    // while each tick is late; 0: any
-  double max_stall_s{0.0};                   // between two ticks; 0: any
-  double max_missed_share{1.0};              // of the periods of a second; 1: any
-  std::optional<core::Placement> placement;  // instead of the protocol's
-  std::optional<core::AudioOutput> audio;    // where masking noise is played
+  double max_late_s{0.0};                        // while each tick is late; 0: any
+  double max_stall_s{0.0};                       // between two ticks; 0: any
+  double max_missed_share{1.0};                  // of the periods of a second; 1: any
+  std::optional<core::Placement> placement;      // instead of the protocol's
+  std::optional<core::AudioOutput> audio;        // where masking noise is played
+  std::optional<core::ActuatorOutput> actuator;  // beside the device
   MarkerSettings markers;
 };
 }  // namespace tapstudy::protocols

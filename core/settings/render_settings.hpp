@@ -2,7 +2,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <vector>
 namespace tapstudy::core {
@@ -72,6 +74,20 @@ struct SinusoidShape {
   }
 };
 
+// Where vibration is divided between the force device and an actuator beside it. A vibration of one
+// frequency, a mode or a sinusoid, is rendered by the device below both edges, by the actuator
+// above both, and in between by both, in shares that sum to one.
+struct Crossover {
+  double low_hz{};
+  double high_hz{};  // > low_hz
+  // sin²(pi x / 2), x the place between the edges on a logarithmic axis.
+  double actuator_share(double frequency_hz) const {
+    const double x = std::log(frequency_hz / low_hz) / std::log(high_hz / low_hz);
+    const double root = std::sin(0.5 * std::numbers::pi * std::clamp(x, 0.0, 1.0));
+    return x >= 1.0 ? 1.0 : root * root;
+  }
+};
+
 struct RenderSettings {
   double dt_s{1e-3};
   double penalty_stiffness_n_per_m{3000.0};  // k of eq. 1
@@ -83,5 +99,6 @@ struct RenderSettings {
   SinusoidShape sinusoid;
   std::shared_ptr<const RecordedTaps> recorded_taps;        // of the stimulus; may be null
   std::shared_ptr<const DeviceResponse> device_response{};  // undone in recordings; null: unknown
+  std::optional<Crossover> crossover{};                     // unset: the device renders all
 };
 }  // namespace tapstudy::core

@@ -16,6 +16,9 @@ const ForcePart coupled_vibration{
       if (settings.finger.mass_kg <= 0.0) {
         return "finger.mass_kg above 0";
       }
+      if (settings.crossover) {
+        return "rendering without crossover_hz: its finger acts on all modes at once";
+      }
       return settings.finger.stiffness_n_per_m > 0.0 ? "" : "finger.stiffness_n_per_m above 0";
     },
     [](const RenderSettings& settings, const VibratingPlate* plate) -> std::unique_ptr<AddedForce> {
@@ -29,8 +32,14 @@ const ForcePart decaying_sinusoid{
                  ? ""
                  : "rendering.sinusoid with an amplitude above 0";
     },
-    [](const RenderSettings& settings, const VibratingPlate* /*plate*/)
-        -> std::unique_ptr<AddedForce> { return std::make_unique<DecayingSinusoid>(settings); }};
+    [](const RenderSettings& settings,
+       const VibratingPlate* /*plate*/) -> std::unique_ptr<AddedForce> {
+      SinusoidShape shape = settings.sinusoid;
+      if (settings.crossover) {
+        shape.amplitude_n_s_per_m *= 1.0 - settings.crossover->actuator_share(shape.frequency_hz);
+      }
+      return std::make_unique<DecayingSinusoid>(shape, settings.dt_s);
+    }};
 
 const ForcePart recorded_transient{
     false,

@@ -29,7 +29,7 @@ double DecayingSinusoid::force_n() const noexcept {
     return 0.0;
   }
   return amplitude_n_ * std::exp(-exponent) *
-         std::sin(2.0 * std::numbers::pi * frequency_hz_ * age_s_);
+         std::sin(2.0 * std::numbers::pi * frequency_hz_ * age_s_ + phase_rad_);
 }
 
 bool RecordedTransient::is_nearer(const RecordedTap& one, const RecordedTap& other,

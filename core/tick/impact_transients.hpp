@@ -8,8 +8,9 @@ namespace tapstudy::core {
 // or by the place.
 class DecayingSinusoid final : public AddedForce {
  public:
-  explicit DecayingSinusoid(const RenderSettings& settings) noexcept
-      : shape_{settings.sinusoid}, dt_s_{settings.dt_s} {}
+  // phase_rad: of the sinusoid when it begins.
+  DecayingSinusoid(const SinusoidShape& shape, double dt_s, double phase_rad = 0.0) noexcept
+      : shape_{shape}, dt_s_{dt_s}, phase_rad_{phase_rad} {}
   void advance(int periods) noexcept override { age_s_ += periods * dt_s_; }
   void touch(const Contact& contact) noexcept override;
   void impact(double speed_m_s) noexcept override;
@@ -21,6 +22,7 @@ class DecayingSinusoid final : public AddedForce {
 
   SinusoidShape shape_;
   double dt_s_;
+  double phase_rad_;
   double share_{0.0};  // of SinusoidShape::ByPlace, where it is touched
   double amplitude_n_{0.0};
   double frequency_hz_{0.0};

@@ -20,6 +20,43 @@ void flush(Eigen::ArrayXd& values) noexcept {
 }
 }  // namespace
 
+void modes_along(const ModalModel& model, const SurfacePoint& point, const Vec3& normal,
+                 Eigen::ArrayXd& along) noexcept {
+  struct Part {
+    double weight;
+    const double* shape;  // of all modes
+  };
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): the first `count` are set
+  std::array<Part, 3 * std::tuple_size_v<decltype(point.nodes)>> parts;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < point.count; ++i) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const double weight = point.weights[i] * normal[axis];
+      if (weight != 0.0) {
+        const Eigen::Index row = Eigen::Index{3} * point.nodes[i] + axis;
+        parts[count++] = {weight, model.shape.data() + row * model.shape.outerStride()};
+      }
+    }
+  }
+  // Sums of a few modes stay in registers while the parts are added to them.
+  constexpr Eigen::Index block = 8;
+  using Block = Eigen::Array<double, block, 1>;
+  Eigen::Index first = 0;
+  for (; first + block <= along.size(); first += block) {
+    Block sum = Block::Zero();
+    for (std::size_t i = 0; i < count; ++i) {
+      sum += parts[i].weight * Eigen::Map<const Block>{parts[i].shape + first};
+    }
+    along.segment<block>(first) = sum;
+  }
+  for (; first < along.size(); ++first) {
+    along[first] = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      along[first] += parts[i].weight * parts[i].shape[first];
+    }
+  }
+}
+
 ModalState::ModalState(const ModalModel& model, Integrator integrator, double dt_s)
     : model_{&model} {
   const Eigen::Index modes = model.frequency_hz.size();
@@ -42,39 +79,7 @@ ModalState::ModalState(const ModalModel& model, Integrator integrator, double dt
 }
 
 void ModalState::touch(const SurfacePoint& point, const Vec3& normal) noexcept {
-  struct Part {
-    double weight;
-    const double* shape;  // of all modes
-  };
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): the first `count` are set
-  std::array<Part, 3 * std::tuple_size_v<decltype(point.nodes)>> parts;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < point.count; ++i) {
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const double weight = point.weights[i] * normal[axis];
-      if (weight != 0.0) {
-        const Eigen::Index row = Eigen::Index{3} * point.nodes[i] + axis;
-        parts[count++] = {weight, model_->shape.data() + row * model_->shape.outerStride()};
-      }
-    }
-  }
-  // Sums of a few modes stay in registers while the parts are added to them.
-  constexpr Eigen::Index block = 8;
-  using Block = Eigen::Array<double, block, 1>;
-  Eigen::Index first = 0;
-  for (; first + block <= touched_.size(); first += block) {
-    Block sum = Block::Zero();
-    for (std::size_t i = 0; i < count; ++i) {
-      sum += parts[i].weight * Eigen::Map<const Block>{parts[i].shape + first};
-    }
-    touched_.segment<block>(first) = sum;
-  }
-  for (; first < touched_.size(); ++first) {
-    touched_[first] = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      touched_[first] += parts[i].weight * parts[i].shape[first];
-    }
-  }
+  modes_along(*model_, point, normal, touched_);
 }
 
 void ModalState::strike(double impulse_n_s) noexcept {

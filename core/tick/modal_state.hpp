@@ -6,6 +6,11 @@
 #include "core/tick/state_transition.hpp"
 #include "core/tick/vibrating_plate.hpp"
 namespace tapstudy::core {
+// The displacement of a point of the surface along the normal, per unit of each modal coordinate
+// (paper eq. 16). `along` has an entry per mode.
+void modes_along(const ModalModel& model, const SurfacePoint& point, const Vec3& normal,
+                 Eigen::ArrayXd& along) noexcept;
+
 // The dynamic state of a plate: one displacement and one velocity per mode (paper eq. 11). The
 // model must outlive it. Only the constructor allocates.
 class ModalState {

@@ -33,7 +33,8 @@ constexpr Format narrow{SND_PCM_FORMAT_S16, 2};
 
 class AlsaSink final : public PcmSink {
  public:
-  explicit AlsaSink(const AlsaSettings& settings) : card_{settings.card} {
+  explicit AlsaSink(const AlsaSettings& settings)
+      : card_{settings.card}, channels_{static_cast<unsigned>(settings.channels)} {
     snd_lib_error_set_handler(say_nothing);  // what it would print is thrown
     check("cannot be opened",
           snd_pcm_open(&pcm_, card_.c_str(), SND_PCM_STREAM_PLAYBACK, SND_PCM_NONBLOCK));
@@ -44,6 +45,10 @@ class AlsaSink final : public PcmSink {
       throw;
     }
     bytes_.resize(period_frames_ * channels_ * format_.bytes);
+    played_on_.assign(channels_, !settings.only_channel);
+    if (settings.only_channel) {
+      played_on_[static_cast<std::size_t>(*settings.only_channel)] = true;
+    }
   }
   ~AlsaSink() override { snd_pcm_close(pcm_); }
   AlsaSink(const AlsaSink&) = delete;
@@ -55,6 +60,10 @@ class AlsaSink final : public PcmSink {
   std::size_t period_frames() const override { return period_frames_; }
   std::size_t buffer_frames() const override { return buffer_frames_; }
   std::string failure() const override { return snd_strerror(failure_); }
+  std::optional<long> delay_frames() noexcept override {
+    snd_pcm_sframes_t frames = 0;
+    return snd_pcm_delay(pcm_, &frames) == 0 ? std::optional<long>{frames} : std::nullopt;
+  }
 
   void begin() noexcept override { snd_pcm_prepare(pcm_); }
   void end() noexcept override { snd_pcm_drop(pcm_); }
@@ -108,6 +117,10 @@ class AlsaSink final : public PcmSink {
     format_ = snd_pcm_hw_params_test_format(pcm_, hw, wide.format) == 0 ? wide : narrow;
     check("takes neither 32 nor 16 bits", snd_pcm_hw_params_set_format(pcm_, hw, format_.format));
     check("has no channels", snd_pcm_hw_params_set_channels_near(pcm_, hw, &channels_));
+    if (settings.only_channel && *settings.only_channel >= static_cast<int>(channels_)) {
+      throw DeviceError{fmt::format("audio: card '{}' has {} channels, none of them number {}",
+                                    card_, channels_, *settings.only_channel + 1)};
+    }
     rate_hz_ = static_cast<unsigned>(settings.rate_hz);
     check(fmt::format("does not play {} Hz", rate_hz_),
           snd_pcm_hw_params_set_rate(pcm_, hw, rate_hz_, 0));
@@ -139,7 +152,8 @@ class AlsaSink final : public PcmSink {
     for (const float sample : period) {
       const auto value = static_cast<Integer>(std::lrint(full_scale * static_cast<double>(sample)));
       for (unsigned channel = 0; channel < channels_; ++channel, to += sizeof value) {
-        std::memcpy(to, &value, sizeof value);
+        const Integer played = played_on_[channel] ? value : Integer{0};
+        std::memcpy(to, &played, sizeof played);
       }
     }
   }
@@ -156,7 +170,8 @@ class AlsaSink final : public PcmSink {
   std::string card_;
   snd_pcm_t* pcm_{};
   Format format_{wide};
-  unsigned channels_{2};
+  unsigned channels_;
+  std::vector<bool> played_on_;  // by channel
   unsigned rate_hz_{};
   snd_pcm_uframes_t period_frames_{};
   snd_pcm_uframes_t buffer_frames_{};

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "device/audio/pace.hpp"
 #include "device/loop/realtime.hpp"
 namespace tapstudy::device {
 void Ramp::apply(std::span<float> samples, Heard wanted) noexcept {
@@ -17,7 +18,6 @@ void Ramp::apply(std::span<float> samples, Heard wanted) noexcept {
 }
 
 namespace {
-constexpr int max_lost_in_a_row = 10;  // a second
 
 // Cuts to full scale and tells how often; what is no number is silence.
 std::int64_t cut_to_full_scale(std::span<float> samples) noexcept {
@@ -29,25 +29,6 @@ std::int64_t cut_to_full_scale(std::span<float> samples) noexcept {
   }
   return cut;
 }
-
-// Keeps a thread from spinning where a card takes whatever it is given, as ALSA's null does: it may
-// play at twice the speed of the clock, which leaves a real card free to follow its own.
-class Pace {
- public:
-  explicit Pace(const PcmSink& sink)
-      : rate_hz_{sink.rate_hz()}, ahead_frames_{static_cast<double>(sink.buffer_frames())} {}
-  void wait_after(std::size_t frames) {
-    frames_ += static_cast<double>(frames);
-    const std::chrono::duration<double> due{(frames_ - ahead_frames_) / (2.0 * rate_hz_)};
-    std::this_thread::sleep_until(begun_ + due);
-  }
-
- private:
-  std::chrono::steady_clock::time_point begun_{std::chrono::steady_clock::now()};
-  double rate_hz_;
-  double ahead_frames_;
-  double frames_{0.0};
-};
 }  // namespace
 
 AudioPlayer::AudioPlayer(std::unique_ptr<PcmSink> sink, std::unique_ptr<SampleSource> source,
@@ -116,7 +97,7 @@ void AudioPlayer::run() {
 // Until it is faded out, all but silence has left the buffer, and a period of silence after it: a
 // server of JACK repeats what a client played last until that has closed.
 void AudioPlayer::play() {
-  Pace pace{*sink_};
+  Pace pace{*sink_, 2.0};  // leaves a real card free to follow its own clock
   const std::size_t silence = sink_->buffer_frames() + period_.size();
   ramp_.restart();  // a card that failed at its end has cut the last fade short
   std::size_t silent_frames = 0;

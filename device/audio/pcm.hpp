@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 namespace tapstudy::device {
@@ -10,6 +11,9 @@ namespace tapstudy::device {
 //   lost      the card had no room for it in time
 //   gone      the card plays no more; failure() tells why
 enum class PcmOutcome : std::uint8_t { played, underrun, lost, gone };
+
+// So many periods for which there was no room, each for 100 ms: the card takes nothing any more.
+inline constexpr int max_lost_in_a_row = 10;
 
 // Plays samples in periods. What keeps a card busy, and what it does with one channel of samples,
 // is its own affair.
@@ -24,6 +28,8 @@ class PcmSink {
   virtual PcmOutcome write(std::span<const float> period) noexcept = 0;
   // Silent at once: what is in the buffer is discarded.
   virtual void end() noexcept = 0;
+  // How many frames are heard before the next one that is written; nullopt: the card does not tell.
+  virtual std::optional<long> delay_frames() noexcept { return std::nullopt; }
   virtual std::string failure() const = 0;
 };
 

@@ -253,7 +253,22 @@ void HapticLoop::render(const core::HandState& hand, double share, double elapse
   sample.saturated = passed.was_changed;
   sample.late = sample.late || gate_.is_rising_again();
   sample.fault = device_.write(passed.force_n);
+  tell_actuator(rendered, passed.force_n);
   sample.force_n = as_array(passed.force_n);
   sample.achieved_n = as_array(device_.detail().achieved_n);
+}
+
+// What a full ring loses is stale by then.
+void HapticLoop::tell_actuator(const core::RenderedTick& rendered,
+                               const core::Vec3& passed_n) noexcept {
+  if (actuator_ == nullptr) {
+    return;
+  }
+  core::ActuatorTick tick = core::actuator_tick(rendered.contact);
+  const double wanted_n = rendered.force_n.norm();
+  tick.at_ns = last_tick_;
+  tick.passed_share = wanted_n > 0.0 ? std::min(1.0, passed_n.norm() / wanted_n) : 1.0;
+  tick.alternative = static_cast<std::uint8_t>(current_);
+  actuator_->try_push(tick);
 }
 }  // namespace tapstudy::device

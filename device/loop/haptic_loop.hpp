@@ -5,6 +5,7 @@
 #include <stop_token>
 
 #include "core/haptics/haptic_state.hpp"
+#include "core/tick/actuator_voice.hpp"
 #include "core/tick/spsc_ring.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "device/device.hpp"
@@ -52,6 +53,8 @@ class HapticLoop {
              core::SpscRing<core::TraceSample>& trace, TickClock& clock,
              ScriptedHand* taps = nullptr) noexcept;
 
+  // Tells an actuator of every tick. Before the first one.
+  void tell(core::SpscRing<core::ActuatorTick>& actuator) noexcept { actuator_ = &actuator; }
   // May be called from any thread. index < number of alternatives.
   void request_alternative(std::size_t index) noexcept {
     requested_.store(index, std::memory_order_release);
@@ -107,6 +110,7 @@ class HapticLoop {
               core::TraceSample& sample) noexcept;
   core::RenderedTick follow(const core::HandState& hand, core::TraceSample& sample) noexcept;
   core::RenderedTick follow_taps(int periods, core::TraceSample& sample) noexcept;
+  void tell_actuator(const core::RenderedTick& rendered, const core::Vec3& passed_n) noexcept;
   void take_requests() noexcept;
   void note_lateness(Nanoseconds woke_at) noexcept;
 
@@ -116,6 +120,7 @@ class HapticLoop {
   core::SpscRing<core::TraceSample>& trace_;
   TickClock& clock_;
   ScriptedHand* taps_;  // nullptr: the device's hand taps
+  core::SpscRing<core::ActuatorTick>* actuator_{nullptr};
   ForceGate gate_;
   std::atomic<std::size_t> requested_{0};
   std::atomic<bool> silence_requested_{false};

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,4 +16,8 @@ struct GrantedRealtime {
 };
 // Requests real-time scheduling for the calling thread, and locked memory for the whole process.
 GrantedRealtime ask_for_realtime(const core::RealtimeRequest& request);
+// For a thread that plays sound beside the loop: the loop comes first.
+inline core::RealtimeRequest below(const core::RealtimeRequest& loop) {
+  return {std::max(0, loop.fifo_priority - 1), loop.lock_memory, std::nullopt};
+}
 }  // namespace tapstudy::device

@@ -190,6 +190,25 @@ void read_sinusoid(MapReader& rendering, core::SinusoidShape& sinusoid) {
                    [&](MapReader& inner) { sinusoid.by_place = read_by_place(inner); });
       });
 }
+
+void read_crossover(MapReader& rendering, Protocol& protocol) {
+  if (!rendering.has("crossover_hz")) {
+    return;
+  }
+  const Eigen::Vector2d edges_hz = rendering.numbers(
+      {"crossover_hz",
+       "two edges: modes below the first are rendered by the force device, above the second by the "
+       "rig's actuator, in between by both; unset: all by the device"},
+      2, {1.0, 5000.0});
+  protocol.rendering.crossover = {edges_hz.x(), edges_hz.y()};
+  if (edges_hz.x() >= edges_hz.y()) {
+    rendering.reject("crossover_hz", "does not ascend");
+  }
+  if (edges_hz.y() >= protocol.rate_hz / 2.0) {
+    rendering.reject("crossover_hz",
+                     "does not end below half of rate_hz: what the device renders would alias");
+  }
+}
 }  // namespace
 
 void read_rendering(MapReader& top, Protocol& protocol) {
@@ -211,10 +230,12 @@ void read_rendering(MapReader& top, Protocol& protocol) {
       [&](MapReader& rendering) {
         protocol.rate_hz =
             rendering.number({"rate_hz", "update rate of the haptic loop"}, {500.0, 10000.0});
-        protocol.band_limit_hz =
-            rendering.number({"band_limit_hz", "modes above it are omitted; below half of rate_hz"},
-                             Range::positive(1e5));
-        if (protocol.band_limit_hz >= protocol.rate_hz / 2.0) {
+        protocol.band_limit_hz = rendering.number(
+            {"band_limit_hz",
+             "modes above it are omitted; below half of rate_hz, unless there is a crossover"},
+            Range::positive(1e5));
+        read_crossover(rendering, protocol);
+        if (!settings.crossover && protocol.band_limit_hz >= protocol.rate_hz / 2.0) {
           rendering.reject("band_limit_hz",
                            "is not below half of rate_hz: higher modes cannot be "
                            "rendered and would alias");
@@ -243,7 +264,9 @@ void read_rendering(MapReader& top, Protocol& protocol) {
             });
         read_sinusoid(rendering, settings.sinusoid);
         if (rendering.has("sinusoid") &&
-            settings.sinusoid.highest_frequency_hz() >= protocol.rate_hz / 2.0) {
+            settings.sinusoid.highest_frequency_hz() >= protocol.rate_hz / 2.0 &&
+            !(settings.crossover &&
+              settings.crossover->actuator_share(settings.sinusoid.frequency_hz) == 1.0)) {
           rendering.reject("sinusoid",
                            "its frequency is not below half of rate_hz: it would alias");
         }

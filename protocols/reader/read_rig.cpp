@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
 
 #include "core/text/print.hpp"
 #include "protocols/reader/read_sections.hpp"
@@ -110,6 +111,15 @@ void read_limits(MapReader& top, core::ForceLimits& limits) {
   }
 }
 
+std::string read_card(MapReader& reader, const std::string& usual) {
+  std::string card = reader.text(
+      {"card", "name of an ALSA PCM (`aplay -L` lists them); in quotes if it has a comma"}, usual);
+  // ALSA's plug-in `file` would run what follows
+  reader.check("card", card.find('|') == std::string::npos, R"({"not": {"pattern": "[|]"}})",
+               "names a command to run ('|')");
+  return card;
+}
+
 void read_audio(MapReader& top, Rig& rig) {
   top.map(
       {"audio",
@@ -117,18 +127,72 @@ void read_audio(MapReader& top, Rig& rig) {
        "audio: {card: \"plughw:1\", rate_hz: 48000, gain_db: -6}"},
       Presence::optional, [&](MapReader& reader) {
         core::AudioOutput& audio = rig.audio.emplace();
-        audio.card = reader.text(
-            {"card", "name of an ALSA PCM (`aplay -L` lists them); in quotes if it has a comma"},
-            audio.card);
-        // ALSA's plug-in `file` would run what follows
-        reader.check("card", audio.card.find('|') == std::string::npos,
-                     R"({"not": {"pattern": "[|]"}})", "names a command to run ('|')");
+        audio.card = read_card(reader, audio.card);
         audio.rate_hz =
             reader.integer({"rate_hz", "samples a second"}, 8000, 192'000, audio.rate_hz);
         audio.gain_db = reader.number(
             {"gain_db",
              "calibration of card and headphones, added to the level that the protocol asks for"},
             {-60.0, 60.0}, audio.gain_db);
+      });
+}
+
+core::ActuatorResponse read_actuator_response(MapReader& reader) {
+  core::ActuatorResponse response;
+  reader.list(
+      {"points",
+       "as measured; between them straight lines over the logarithm of frequency, beyond them "
+       "constant"},
+      Presence::at_least_one, [&](MapReader& point) {
+        std::vector<core::DeviceResponse::Point>& points = response.magnitude.points;
+        const double frequency_hz =
+            point.number({"frequency_hz", "ascending"}, Range::positive(1e5));
+        if (!points.empty() && frequency_hz <= points.back().frequency_hz) {
+          point.reject("frequency_hz", "is not above that of the point before");
+        }
+        points.push_back(
+            {frequency_hz, point.number({"gain", "force over force commanded"}, {1e-3, 1e3})});
+        response.phase_rad.push_back(
+            std::numbers::pi / 180.0 *
+            point.number({"phase_deg", "of the force, not wrapped; negative: it lags"},
+                         {-3600.0, 3600.0}, 0.0));
+      });
+  response.magnitude.max_boost =
+      reader.number({"max_boost", "no frequency is amplified by more"}, {1.0, 100.0}, 4.0);
+  return response;
+}
+
+void read_actuator(MapReader& top, Rig& rig) {
+  top.map(
+      {"actuator",
+       "a vibration actuator on a sound card, which renders what is above the protocol's "
+       "rendering.crossover_hz; unset: none",
+       "actuator: {card: \"hw:1\", full_scale_n: 4}"},
+      Presence::optional, [&](MapReader& reader) {
+        core::ActuatorOutput& actuator = rig.actuator.emplace();
+        actuator.card = read_card(reader, "default");
+        actuator.rate_hz = reader.integer({"rate_hz", "samples a second"}, 8000, 192'000, 48'000);
+        actuator.channels = reader.integer(
+            {"channels", "of the card that are opened; silent but for one"}, 1, 64, 2);
+        actuator.channel = reader.integer({"channel", "that plays, from 1 to channels"}, 1, 64, 1);
+        if (actuator.channel > actuator.channels) {
+          reader.reject("channel", "is above channels");
+        }
+        actuator.full_scale_n =
+            reader.number({"full_scale_n", "force on the finger at full scale"}, {1e-3, 1000.0});
+        actuator.limits.peak_n = reader.number({"max_force_n", "no sample is larger"},
+                                               Range::positive(1000.0), actuator.full_scale_n);
+        actuator.limits.rms_n =
+            reader.number({"max_rms_force_n", "over about a second: what heats a coil"},
+                          Range::positive(1000.0), actuator.limits.peak_n);
+        actuator.max_delay_s = reader.number(
+            {"max_delay_s", "from the tick of an impact to its sound; it is the same for all"},
+            {0.001, 0.1}, actuator.max_delay_s);
+        actuator.response = core::ActuatorResponse::flat();
+        reader.map(
+            {"response", "what it makes of a command, undone mode by mode; unset: as commanded"},
+            Presence::optional,
+            [&](MapReader& inner) { actuator.response = read_actuator_response(inner); });
       });
 }
 
@@ -219,6 +283,7 @@ void read_whole(MapReader& top, const std::string& file, RigDevices devices, Rig
   check_reply_time(top, rig);
   read_own_placement(top, [&](const core::Placement& placement) { rig.placement = placement; });
   read_audio(top, rig);
+  read_actuator(top, rig);
   read_markers(top, file, rig);
 }
 

@@ -202,6 +202,7 @@ void run_check(const CheckOptions& options) {
   print_design(protocol, participants);
   ModelLibrary models;
   print_models(protocol, models);
+  print_divided_modes(protocol, models);
   if (rig) {
     print_unrendered_modes(protocol, models, *rig);
   }

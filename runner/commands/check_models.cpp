@@ -183,6 +183,11 @@ namespace {
 constexpr double usual_band_hz = 300.0;
 constexpr double least_gain = 0.5;
 
+double device_share(const protocols::Protocol& protocol, double frequency_hz) {
+  const auto& crossover = protocol.rendering.crossover;
+  return crossover ? 1.0 - crossover->actuator_share(frequency_hz) : 1.0;
+}
+
 struct Band {
   double highest_hz{};
   const core::DeviceResponse* response{};  // nullptr: not measured
@@ -227,7 +232,7 @@ void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& m
     const Eigen::ArrayXd frequencies_hz = plate->model.frequency_hz;
     std::vector<std::string> lost;
     for (const double frequency_hz : frequencies_hz) {
-      if (!band->holds(frequency_hz)) {
+      if (!band->holds(frequency_hz) && device_share(protocol, frequency_hz) > 0.0) {
         lost.push_back(fmt::format("{:.0f}", frequency_hz));
       }
     }
@@ -235,6 +240,30 @@ void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& m
                lost.empty() ? fmt::format("all {} modes", frequencies_hz.size())
                             : fmt::format("{} of {} modes are lost, at {} Hz", lost.size(),
                                           frequencies_hz.size(), fmt::join(lost, ", ")));
+  }
+}
+
+void print_divided_modes(const protocols::Protocol& protocol, ModelLibrary& models) {
+  const auto& crossover = protocol.rendering.crossover;
+  if (!crossover) {
+    return;
+  }
+  fmt::print("\nmodes rendered by the device below {} Hz, by the actuator above {} Hz:\n",
+             crossover->low_hz, crossover->high_hz);
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (!stimulus.technique->needs_model()) {
+      continue;
+    }
+    int device = 0;
+    int actuator = 0;
+    int both = 0;
+    const auto plate = models.plate_of(protocol, stimulus_with(protocol, stimulus));
+    for (const double frequency_hz : plate->model.frequency_hz) {
+      const double share = device_share(protocol, frequency_hz);
+      ++(share == 1.0 ? device : share == 0.0 ? actuator : both);
+    }
+    fmt::print("  {}: {} by the device, {} by the actuator, {} by both\n", stimulus.name, device,
+               actuator, both);
   }
 }
 

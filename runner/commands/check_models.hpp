@@ -21,9 +21,13 @@ std::string describe_spending(const protocols::Protocol& protocol,
 // that can move as a rigid body, which no technique renders.
 void warn_of_light_plates(const protocols::Protocol& protocol, ModelLibrary& models);
 
+// How many modes the device, the actuator and both render, where the protocol has a crossover.
+void print_divided_modes(const protocols::Protocol& protocol, ModelLibrary& models);
+
 // Names the modes of each stimulus that the rig's device does not render: above its vibration band,
 // which is 300 Hz where a device of hardware states none (the paper, section 4), and where its
-// response to a vibration is below a half. Nothing of a rig that has neither.
+// response to a vibration is below a half; not those that an actuator renders. Nothing of a rig
+// that has neither.
 void print_unrendered_modes(const protocols::Protocol& protocol, ModelLibrary& models,
                             const protocols::Rig& rig);
 

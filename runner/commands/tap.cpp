@@ -33,6 +33,7 @@ struct TapOptions {
   std::string technique;
   std::string script;
   std::string csv;
+  std::string actuator_csv;
   std::string panels;
   std::string frames;
   std::vector<std::string> settings;
@@ -57,6 +58,14 @@ void write_csv(std::ostream& out, const std::vector<TraceSample>& trace) {
   }
 }
 
+void write_actuator_csv(std::ostream& out, const std::vector<float>& actuator_n) {
+  out << "t_s,actuator_n\n";
+  for (std::size_t i = 0; i < actuator_n.size(); ++i) {
+    core::print(out, "{:.9f},{:.9g}\n", static_cast<double>(i) / tap_actuator_rate_hz,
+                actuator_n[i]);
+  }
+}
+
 template <class Value>
 double largest(const std::vector<TraceSample>& trace, const Value& value) {
   double most = 0.0;
@@ -67,7 +76,8 @@ double largest(const std::vector<TraceSample>& trace, const Value& value) {
 }
 
 void print_summary(const TapOptions& options, const protocols::PresentedStimulus& stimulus,
-                   const std::vector<TraceSample>& trace) {
+                   const TapTrace& recorded) {
+  const std::vector<TraceSample>& trace = recorded.ticks;
   const auto impact = std::ranges::find(trace, true, &TraceSample::impact);
   if (options.script.empty()) {
     fmt::print("{} at {}\n", options.stimulus, options.at);
@@ -89,6 +99,10 @@ void print_summary(const TapOptions& options, const protocols::PresentedStimulus
              largest(trace, [](const TraceSample& s) { return s.vibration_n; }));
   fmt::print("  sinusoid       {:.4g} N at most\n",
              largest(trace, [](const TraceSample& s) { return s.sinusoid_n; }));
+  if (!recorded.actuator_n.empty()) {
+    const auto [least, most] = std::ranges::minmax(recorded.actuator_n);
+    fmt::print("  actuator       {:.4g} N at most\n", std::max(std::abs(least), std::abs(most)));
+  }
   fmt::print("  limited ticks  {}\n", std::ranges::count(trace, true, &TraceSample::saturated));
 }
 
@@ -156,7 +170,7 @@ void draw_panels(const TapOptions& options, const protocols::Protocol& protocol)
         const ScriptedTap tap{stimulus_with(protocol, stimulus), at_m, options.speed_m_s,
                               options.seconds};
         figure.panels.push_back(panel_of(fmt::format("{}, {}", stimulus.label, point),
-                                         trace_of(tap, protocol, rig, models)));
+                                         trace_of(tap, protocol, rig, models).ticks));
       }
     }
     const std::string file =
@@ -184,22 +198,18 @@ void draw_frames(const TapOptions& options, const protocols::Protocol& protocol,
       options.frames);
 }
 
-std::vector<TraceSample> trace_of_script(const TapOptions& options,
-                                         const protocols::Protocol& protocol,
-                                         const protocols::PresentedStimulus& stimulus,
-                                         ModelLibrary& models) {
+TapTrace trace_of_script(const TapOptions& options, const protocols::Protocol& protocol,
+                         const protocols::PresentedStimulus& stimulus, ModelLibrary& models) {
   const protocols::TapScript script = protocols::parse_tap_script(
       protocols::contents_of(options.script), options.script, *stimulus.plate);
   return trace_of(stimulus, script, protocol, simulated_rig(), models);
 }
 
-std::vector<TraceSample> trace_of_tap(const TapOptions& options,
-                                      const protocols::Protocol& protocol,
-                                      const protocols::PresentedStimulus& stimulus,
-                                      ModelLibrary& models) {
+TapTrace trace_of_tap(const TapOptions& options, const protocols::Protocol& protocol,
+                      const protocols::PresentedStimulus& stimulus, ModelLibrary& models) {
   const ScriptedTap tap{stimulus, point_on_plate(options.at, *stimulus.plate), options.speed_m_s,
                         options.seconds};
-  const auto trace = trace_of(tap, protocol, simulated_rig(), models);
+  TapTrace trace = trace_of(tap, protocol, simulated_rig(), models);
   if (!options.frames.empty()) {
     draw_frames(options, protocol, tap, models);
   }
@@ -221,7 +231,7 @@ void run_tap(const TapOptions& options) {
   if (options.stimulus.empty()) {
     throw core::InvalidInput{"--stimulus is required (or --panels DIR for all of them)"};
   }
-  for (const std::string& file : {options.csv, options.frames}) {
+  for (const std::string& file : {options.csv, options.actuator_csv, options.frames}) {
     if (!file.empty() && file != "-") {
       core::check_is_new(file);
     }
@@ -229,17 +239,23 @@ void run_tap(const TapOptions& options) {
   ModelLibrary models;
   const protocols::PresentedStimulus stimulus =
       member_set_to(options.settings, protocol, protocol.stimulus(options.stimulus));
-  const auto trace = options.script.empty() ? trace_of_tap(options, protocol, stimulus, models)
-                                            : trace_of_script(options, protocol, stimulus, models);
-  if (options.csv.empty()) {
-    print_summary(options, stimulus, trace);
-    return;
+  const TapTrace trace = options.script.empty()
+                             ? trace_of_tap(options, protocol, stimulus, models)
+                             : trace_of_script(options, protocol, stimulus, models);
+  if (!options.actuator_csv.empty()) {
+    if (!protocol.rendering.crossover) {
+      throw core::InvalidInput{"--actuator-csv: the protocol has no rendering.crossover_hz"};
+    }
+    core::write_new_file(options.actuator_csv,
+                         [&](std::ostream& out) { write_actuator_csv(out, trace.actuator_n); });
   }
   if (options.csv == "-") {
-    write_csv(std::cout, trace);
+    write_csv(std::cout, trace.ticks);
     return;
   }
-  core::write_new_file(options.csv, [&](std::ostream& out) { write_csv(out, trace); });
+  if (!options.csv.empty()) {
+    core::write_new_file(options.csv, [&](std::ostream& out) { write_csv(out, trace.ticks); });
+  }
   print_summary(options, stimulus, trace);
 }
 }  // namespace
@@ -259,6 +275,8 @@ void add_tap(CommandParser& line) {
                  "What the finger does (YAML), instead of --at, --speed and --seconds");
   command.repeatable("--set", options->settings, set_help);
   command.option("--csv", options->csv, "Write every tick to this new file (- for stdout)");
+  command.option("--actuator-csv", options->actuator_csv,
+                 "Write what the actuator renders of it, 48000 samples a second, to this new file");
   command.option("--panels", options->panels,
                  "Draw all stimuli at all tapping points into this directory (SVG)");
   command.file("--frames", options->frames, ".svg",

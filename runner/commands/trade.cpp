@@ -29,6 +29,10 @@ void check(const Tolerance& tolerance) {
 
 void run_trade(const TradeOptions& options) {
   const protocols::Protocol protocol = protocols::read_protocol(options.protocol);
+  if (protocol.rendering.crossover) {
+    throw core::InvalidInput{
+        "trade measures what one device renders: the protocol has rendering.crossover_hz"};
+  }
   const protocols::Stimulus& stimulus = protocol.stimulus(options.stimulus);
   check(options.tolerance);
   if (!options.out.empty()) {

@@ -13,6 +13,7 @@
 #include "device/loop/sleep_inhibitor.hpp"
 #include "protocols/schedule/groups.hpp"
 #include "runner/live_session/live_trials.hpp"
+#include "runner/session/devices/actuator_card.hpp"
 #include "runner/session/devices/device_kind.hpp"
 #include "runner/session/devices/masking_card.hpp"
 #include "runner/session/devices/rigs.hpp"
@@ -409,6 +410,14 @@ LiveOutcome run_live_session(const LiveSession& live) {
   std::unique_ptr<SessionDevice> device = kind_of(live.rig).open(device_request);
   Markers markers{live.rig.markers};
   std::unique_ptr<device::PcmSink> card = open_masking_card(live.protocol, live.rig);
+  const core::ActuatorOutput* const actuator = actuator_of(live.protocol, live.rig);
+  if (live.protocol.rendering.crossover && actuator == nullptr) {
+    warn(
+        "the rig has no section 'actuator': nobody renders what rendering.crossover_hz leaves to "
+        "it");
+  }
+  const auto actuated =
+      actuator == nullptr ? nullptr : actuator_player(*actuator, live.protocol, live.rig);
   results::Store store = open_study(live.directory, live.protocol, live.protocol_file);
   check_names(store, live.protocol);
   BegunSession session = begin_session(
@@ -419,7 +428,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   device->begin_session(session.row.seed);
   const auto masking = masking_player(std::move(card), live.protocol, live.rig, session.row.seed);
   LiveTrials{{live, settings, models, device_request, input, commands, ask_operator, masking.get(),
-              markers, store, session},
+              actuated.get(), markers, store, session},
              std::move(device)}
       .run();
   return outcome_of(session, live.protocol, store);

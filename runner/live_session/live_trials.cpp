@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "runner/console/console.hpp"
+#include "runner/session/devices/actuator_card.hpp"
 #include "runner/session/devices/device_kind.hpp"
 #include "runner/session/devices/masking_card.hpp"
 #include "runner/terminal/operator_dialogue.hpp"
@@ -154,10 +155,14 @@ LiveTrials::LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device
                [this](const results::EventRow& event, int trial) {
                  send({parts_.session.row.id, now_s(), event.kind, trial,
                        fmt::format("{:g}", event.value)});
-               }},
+               },
+               actuator_of(parts.live.protocol, parts.live.rig)},
               recorder_,
               parts.session.earlier} {
   parts_.commands = commands_to(desk_);
+  if (parts_.actuator != nullptr) {
+    live_loop_.use(*parts_.actuator);
+  }
   live_loop_.watch([this](const core::TraceSample& sample, Clock::time_point at) {
     if (console_) {
       console_->watch(sample);

@@ -29,10 +29,11 @@ class LiveTrials {
     const device::LoopSettings& settings;
     ModelLibrary& models;
     const DeviceRequest& device_request;
-    LineInput& input;              // of the terminal
-    TypedCommands& commands;       // typed there; possible from now on
-    AskOperator& ask_operator;     // of device_request: changed where there are pages
-    device::AudioPlayer* masking;  // nullptr: no noise
+    LineInput& input;                  // of the terminal
+    TypedCommands& commands;           // typed there; possible from now on
+    AskOperator& ask_operator;         // of device_request: changed where there are pages
+    device::AudioPlayer* masking;      // nullptr: no noise
+    device::ActuatorPlayer* actuator;  // nullptr: none
     Markers& markers;
     results::Store& store;
     BegunSession& session;

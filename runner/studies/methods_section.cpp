@@ -211,11 +211,15 @@ std::string rendering(const Protocol& protocol, const DoneBlocks& done) {
   if (techniques.empty()) {
     return "";
   }
+  const auto& crossover = protocol.rendering.crossover;
   return fmt::format(
-      "Contact was rendered by a spring of {:g} N/m with {} {}{}. ",
+      "Contact was rendered by a spring of {:g} N/m with {} {}{}{}. ",
       protocol.rendering.penalty_stiffness_n_per_m,
       techniques.size() == 1 ? "the technique" : "the techniques", fmt::join(techniques, ", "),
-      vibrates ? fmt::format("; modes of vibration up to {:g} Hz", protocol.band_limit_hz) : "");
+      vibrates ? fmt::format("; modes of vibration up to {:g} Hz", protocol.band_limit_hz) : "",
+      crossover ? fmt::format("; an actuator beside the device took over from {:g} to {:g} Hz",
+                              crossover->low_hz, crossover->high_hz)
+                : "");
 }
 
 std::string describe_practice(const Block& block) {

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/model/shape/shape.hpp"
 #include "core/text/plain_text.hpp"
+#include "device/audio/actuator_source.hpp"
 #include "device/hand/prescribed_hand.hpp"
 #include "device/hand/simulated_hand.hpp"
 #include "device/loop/haptic_loop.hpp"
@@ -134,23 +135,69 @@ void check(const ScriptedTap& tap) {
   }
 }
 
-// Runs the loop in virtual time and keeps every tick.
-std::vector<core::TraceSample> samples_of(device::Device& hand,
-                                          std::span<core::TapRenderer> alternatives,
-                                          const device::LoopSettings& settings, double seconds) {
-  const auto ticks = static_cast<std::int64_t>(
-      std::llround(seconds / (1e-9 * static_cast<double>(settings.period))));
-  core::SpscRing<core::TraceSample> ring{static_cast<std::size_t>(ticks)};
-  device::VirtualClock clock;
-  device::HapticLoop loop{hand, alternatives, settings, ring, clock};
-  loop.run_ticks(ticks);
-  std::vector<core::TraceSample> samples;
-  core::TraceSample sample{};
-  while (ring.try_pop(sample)) {
-    samples.push_back(sample);
-  }
-  return samples;
+// One that does as it is told.
+core::ActuatorOutput ideal_actuator() {
+  core::ActuatorOutput actuator;
+  actuator.rate_hz = tap_actuator_rate_hz;
+  actuator.response = core::ActuatorResponse::flat();
+  return actuator;
 }
+
+TrialStimuli divided_stimuli(const protocols::Protocol& protocol,
+                             const protocols::PresentedStimulus& stimulus, ModelLibrary& models) {
+  const core::ActuatorOutput actuator = ideal_actuator();
+  return build_trial_stimuli(protocol, std::vector{stimulus}, models,
+                             protocol.rendering.crossover ? &actuator : nullptr);
+}
+
+// Runs the loop in virtual time and keeps every tick, and what the actuator renders until the next.
+class TapRecorder {
+ public:
+  TapRecorder(device::Device& hand, TrialStimuli& stimuli, const device::LoopSettings& settings)
+      : period_s_{1e-9 * static_cast<double>(settings.period)},
+        loop_{hand, stimuli.alternatives, settings, ring_, clock_},
+        source_{{tap_actuator_rate_hz, full_scale_n, {}, period_s_, 0.0}} {
+    source_.use(stimuli.voices);
+    loop_.tell(source_.ticks());
+    has_actuator_ = !stimuli.voices.empty();
+  }
+  TapTrace record(double seconds) {
+    TapTrace trace;
+    const auto ticks = static_cast<std::int64_t>(std::llround(seconds / period_s_));
+    core::TraceSample sample{};
+    for (std::int64_t i = 0; i < ticks; ++i) {
+      loop_.run_ticks(1);
+      while (ring_.try_pop(sample)) {
+        trace.ticks.push_back(sample);
+      }
+      if (has_actuator_) {
+        render(static_cast<double>(i + 1) * period_s_, trace.actuator_n);
+      }
+    }
+    return trace;
+  }
+
+ private:
+  static constexpr double full_scale_n = 1e6;
+  void render(double until_s, std::vector<float>& rendered_n) {
+    const auto samples = static_cast<std::size_t>(std::llround(until_s * tap_actuator_rate_hz));
+    const std::size_t begin = rendered_n.size();
+    const double frame_ns = 1e9 / tap_actuator_rate_hz;
+    rendered_n.resize(samples);
+    const auto period = std::span{rendered_n}.subspan(begin);
+    source_.fill(period, static_cast<double>(begin) * frame_ns, frame_ns, clock_.now());
+    for (float& force_n : period) {
+      force_n *= static_cast<float>(full_scale_n);
+    }
+  }
+
+  double period_s_;
+  core::SpscRing<core::TraceSample> ring_{4};
+  device::VirtualClock clock_;
+  device::HapticLoop loop_;
+  device::ActuatorSource source_;
+  bool has_actuator_{false};
+};
 
 // The aim of the muscle in each tick, in the device frame.
 std::vector<core::Vec3> aims_of(const ScriptPath& path, const core::Shape& shape,
@@ -175,8 +222,8 @@ std::vector<core::Vec3> aims_of(const ScriptPath& path, const core::Shape& shape
 }
 }  // namespace
 
-std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
-                                        const protocols::Rig& rig, ModelLibrary& models) {
+TapTrace trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
+                  const protocols::Rig& rig, ModelLibrary& models) {
   const protocols::Plate& plate = *tap.stimulus.plate;
   check(tap);
   const double z_m = height_m(tap, plate.shape);
@@ -192,14 +239,13 @@ std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols:
   planned.press_m = protocol.simulation.taps.press_m;
   planned.dwell_s = tap.seconds;
   hand.follow({planned});
-  TrialStimuli stimuli = build_trial_stimuli(protocol, std::vector{tap.stimulus}, models);
-  return samples_of(hand, stimuli.alternatives, settings, hover_m / tap.speed_m_s + tap.seconds);
+  TrialStimuli stimuli = divided_stimuli(protocol, tap.stimulus, models);
+  return TapRecorder{hand, stimuli, settings}.record(hover_m / tap.speed_m_s + tap.seconds);
 }
 
-std::vector<core::TraceSample> trace_of(const protocols::PresentedStimulus& stimulus,
-                                        const protocols::TapScript& script,
-                                        const protocols::Protocol& protocol,
-                                        const protocols::Rig& rig, ModelLibrary& models) {
+TapTrace trace_of(const protocols::PresentedStimulus& stimulus, const protocols::TapScript& script,
+                  const protocols::Protocol& protocol, const protocols::Rig& rig,
+                  ModelLibrary& models) {
   const protocols::Plate& plate = *stimulus.plate;
   const device::LoopSettings settings = loop_settings(protocol, rig);
   const double dt_s = protocol.rendering.dt_s;
@@ -207,8 +253,8 @@ std::vector<core::TraceSample> trace_of(const protocols::PresentedStimulus& stim
   const ScriptPath path{script, body, stimulus.rendering.penalty_stiffness_n_per_m};
   device::AimedHand hand{
       body, dt_s, aims_of(path, plate.shape, settings.placement.scaled(plate.lateral_ratio), dt_s)};
-  TrialStimuli stimuli = build_trial_stimuli(protocol, std::vector{stimulus}, models);
-  return samples_of(hand, stimuli.alternatives, settings, path.duration_s());
+  TrialStimuli stimuli = divided_stimuli(protocol, stimulus, models);
+  return TapRecorder{hand, stimuli, settings}.record(path.duration_s());
 }
 
 Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Plate& plate) {

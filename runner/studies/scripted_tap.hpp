@@ -47,6 +47,15 @@ class ScriptPath {
 // spring and muscle in series.
 double aim_below_m(double force_n, const core::HandBody& hand, double contact_stiffness_n_per_m);
 
+// What device and actuator render of a tap, in virtual time.
+struct TapTrace {
+  std::vector<core::TraceSample> ticks;
+  // On the finger, along the outward normal, sample by sample from the first tick on; empty unless
+  // the protocol has a crossover. Before the limits of an actuator, without its delay.
+  std::vector<float> actuator_n;
+};
+inline constexpr int tap_actuator_rate_hz = 48'000;
+
 // One tap by the simulated hand with exactly this impact speed, and its trace.
 struct ScriptedTap {
   protocols::PresentedStimulus stimulus;
@@ -55,15 +64,14 @@ struct ScriptedTap {
   double seconds{0.5};
 };
 // Throws InvalidInput if the point is off the plate or the speed out of 0.001 to 10 m/s.
-std::vector<core::TraceSample> trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
-                                        const protocols::Rig& rig, ModelLibrary& models);
+TapTrace trace_of(const ScriptedTap& tap, const protocols::Protocol& protocol,
+                  const protocols::Rig& rig, ModelLibrary& models);
 
 // The simulated hand does what a script says, and its trace. Throws InvalidInput, with the step's
 // line, if the finger leaves the plate or cannot be where it should in time.
-std::vector<core::TraceSample> trace_of(const protocols::PresentedStimulus& stimulus,
-                                        const protocols::TapScript& script,
-                                        const protocols::Protocol& protocol,
-                                        const protocols::Rig& rig, ModelLibrary& models);
+TapTrace trace_of(const protocols::PresentedStimulus& stimulus, const protocols::TapScript& script,
+                  const protocols::Protocol& protocol, const protocols::Rig& rig,
+                  ModelLibrary& models);
 
 // "X,Y" in metres or the name of a tapping point. Throws InvalidInput if it is neither.
 Eigen::Vector2d point_on_plate(const std::string& text, const protocols::Plate& plate);

@@ -108,6 +108,8 @@ TEST_CASE("schema and reader accept the same protocols", "[protocols][schema]") 
       {"mesh: auto", "mesh: automatic"},
       {"mesh: auto", "mesh: {}"},
       {"below_db: 60", "below_db: 5"},
+      {"crossover_hz: [200, 280]", "crossover_hz: 200"},
+      {"crossover_hz: [200, 280]", "crossover_hz: [0, 280]"},
       {"accuracy: 0.01", "accuracy: 1"},
       {"radius_m: 0.02}", "low_m: [0, 0, 0]}"},
       {"side: left}", "side: under}"},
@@ -347,7 +349,9 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
   std::set<std::string> asked;
   for (const std::string& rig :
        {shipped_rig("spidar_g6") + "audio: {}\nmarkers: {osc: {port: 9000}, lsl: {}, lines: x}\n"
-                                   "vibration_response: {points: [{frequency_hz: 9, gain: 1}]}\n",
+                                   "vibration_response: {points: [{frequency_hz: 9, gain: 1}]}\n"
+                                   "actuator: {full_scale_n: 4, response: {points: "
+                                   "[{frequency_hz: 9, gain: 1}]}}\n",
         shipped_rig("remote"), replay_rig}) {
     asked.merge(runner::rig_keys_asked_for(rig, directory / "rig.yaml"));
   }
@@ -389,6 +393,12 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema]") 
       {"simulated_hand", "max_force_n: 10\n",
        "max_force_n: 10\naudio: {card: \"file:FILE='|true',FORMAT=raw\"}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {rate_hz: 1}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nactuator: {full_scale_n: 4}\n"},
+      {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nactuator: {}\n"},
+      {"simulated_hand", "max_force_n: 10\n",
+       "max_force_n: 10\nactuator: {full_scale_n: 4, response: {points: []}}\n"},
+      {"simulated_hand", "max_force_n: 10\n",
+       "max_force_n: 10\nactuator: {full_scale_n: 4, card: \"file:FILE='|true',FORMAT=raw\"}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {gain_db: 61}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {volume: 1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nmarkers: {osc: {port: 9000}}\n"},

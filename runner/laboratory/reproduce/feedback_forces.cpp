@@ -42,8 +42,9 @@ Taps taps_of(Bench& bench, const Route& route) {
       for (const auto& [point, at_m] : stimulus.plate->tapping_points_m) {
         core::tell(bench.progress, fmt::format("{}, {} at {}", route.name, name, point));
         const ScriptedTap tap{stimulus, at_m, tap_speed_m_s, shown_s};
-        taps.force.emplace(fmt::format("{} {}", name, point),
-                           tap_force(trace_of(tap, protocol, rig, bench.models), protocol.rate_hz));
+        taps.force.emplace(
+            fmt::format("{} {}", name, point),
+            tap_force(trace_of(tap, protocol, rig, bench.models).ticks, protocol.rate_hz));
       }
     }
   }

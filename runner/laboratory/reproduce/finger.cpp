@@ -351,7 +351,8 @@ std::vector<double> rendered_n(Bench& bench, const protocols::Protocol& protocol
   const auto presented = stimulus_with(protocol, protocol.stimulus(stimulus));
   const auto trace =
       trace_of(ScriptedTap{presented, presented.plate->tapping_points_m.at("P3"), speed_m_s, 0.1},
-               protocol, simulated_rig(), bench.models);
+               protocol, simulated_rig(), bench.models)
+          .ticks;
   const auto impact = std::ranges::find(trace, true, &core::TraceSample::impact);
   impact_m_s = -core::along_normal(impact->velocity_m_s);
   std::vector<double> force_n;

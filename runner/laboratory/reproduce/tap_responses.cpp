@@ -198,7 +198,7 @@ std::vector<FeltTap> felt_tap(const protocols::Protocol& protocol, const std::st
   const ScriptedTap tap{presented, presented.plate->tapping_points_m.at(point), speed_m_s,
                         tapped_s};
   std::vector<device::FeltTick> felt;
-  for (const core::TraceSample& sample : trace_of(tap, protocol, unlimited_rig(), models)) {
+  for (const core::TraceSample& sample : trace_of(tap, protocol, unlimited_rig(), models).ticks) {
     const core::HandState hand{
         core::Vec3{sample.position_m[0], sample.position_m[1], sample.position_m[2]},
         core::Vec3::Zero()};

@@ -10,6 +10,7 @@
 #include "device/audio/alsa_sink.hpp"
 #include "device/audio/noise.hpp"
 #include "device/device.hpp"
+#include "device/loop/realtime.hpp"
 #include "runner/session/devices/device_kind.hpp"
 #include "runner/terminal/logging.hpp"
 namespace tapstudy::runner {
@@ -27,11 +28,6 @@ std::string_view word_of(core::NoiseKind kind) {
       break;
   }
   return "noise";
-}
-
-// The haptic thread comes first.
-core::RealtimeRequest below(const core::RealtimeRequest& loop) {
-  return {std::max(0, loop.fifo_priority - 1), loop.lock_memory, std::nullopt};
 }
 
 bool has_card(const protocols::Rig& rig) {
@@ -115,6 +111,6 @@ std::unique_ptr<device::AudioPlayer> masking_player(std::unique_ptr<device::PcmS
   auto noise = std::make_unique<device::Noise>(
       played, card->rate_hz(), core::derived_seed(session_seed, core::Purpose::masking));
   return std::make_unique<device::AudioPlayer>(std::move(card), std::move(noise), played.ramp_s,
-                                               below(rig.realtime));
+                                               device::below(rig.realtime));
 }
 }  // namespace tapstudy::runner

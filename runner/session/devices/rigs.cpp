@@ -10,6 +10,7 @@
 #include "device/spidar/kinematics.hpp"
 #include "protocols/reader/read_rig.hpp"
 #include "protocols/yaml/text_file.hpp"
+#include "runner/session/devices/actuator_card.hpp"
 #include "runner/session/devices/device_kind.hpp"
 #include "runner/session/devices/masking_card.hpp"
 namespace tapstudy::runner {
@@ -107,5 +108,6 @@ void check_fits(const protocols::Protocol& protocol, const protocols::Rig& rig) 
   check_workspace(protocol, rig);
   kind_of(rig).check(rig);
   check_masking(protocol, rig);
+  check_actuator(protocol, rig);
 }
 }  // namespace tapstudy::runner

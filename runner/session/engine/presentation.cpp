@@ -78,7 +78,7 @@ TrialStimuli stimuli_of(const protocols::PlannedTrial& trial, bool is_of_real_pl
     presented.push_back(protocols::stimulus_at(
         parts.protocol, parts.protocol.stimulus(alternative.stimulus), alternative.values));
   }
-  return build_trial_stimuli(parts.protocol, presented, parts.models);
+  return build_trial_stimuli(parts.protocol, presented, parts.models, parts.actuator);
 }
 
 // The events of the trace come first among those at the same time.
@@ -105,7 +105,8 @@ Presentation present(const TrialInView& trial, const SessionParts& parts) {
     }
   }};
   const Rendered rendered{stimuli.alternatives,
-                          scripted_tap(parts.protocol, trial.prompt.block->explore.scripted_taps)};
+                          scripted_tap(parts.protocol, trial.prompt.block->explore.scripted_taps),
+                          stimuli.voices};
   if (rendered.scripted) {
     events.add({0.0, "scripted_taps", rendered.scripted->speed_m_s});
   }

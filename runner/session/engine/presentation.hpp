@@ -36,6 +36,7 @@ struct SessionParts {
   std::uint64_t seed{};  // of the session
   // Told of a trial's events that are not found in its trace, as they happen; may be empty.
   std::function<void(const results::EventRow& event, int trial)> tell{};
+  const core::ActuatorOutput* actuator{};  // nullptr: the device renders alone
 };
 
 // Builds the trial's stimuli and renders them until the participant has given an answer that

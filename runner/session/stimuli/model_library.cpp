@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/model/plate_model.hpp"
+#include "core/techniques/actuated.hpp"
 #include "core/techniques/technique.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
 #include "runner/build_info/build_info.hpp"
@@ -246,17 +247,47 @@ void ModelLibrary::build_all(const protocols::Protocol& protocol) {
   }
 }
 
+ModelLibrary::Divided ModelLibrary::divided(const protocols::PresentedStimulus& stimulus,
+                                            const Plate& whole) {
+  const auto& crossover = stimulus.rendering.crossover;
+  if (!whole || !crossover) {
+    return {whole, nullptr};
+  }
+  const auto share = [&](core::RenderedBy by) {
+    return std::make_shared<const core::VibratingPlate>(
+        vibrating_plate(stimulus.plate->shape, core::share_of(whole->model, *crossover, by)));
+  };
+  const auto divide = [&] {
+    return Divided{share(core::RenderedBy::device), share(core::RenderedBy::actuator)};
+  };
+  if (!stimulus.changed.empty()) {
+    return divide();
+  }
+  const std::lock_guard lock{mutex_};
+  const auto [kept, is_new] = divided_.try_emplace(whole);
+  if (is_new) {
+    kept->second = divide();
+  }
+  return kept->second;
+}
+
 TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
                                  const std::vector<protocols::PresentedStimulus>& stimuli,
-                                 ModelLibrary& models) {
+                                 ModelLibrary& models, const core::ActuatorOutput* actuator) {
   TrialStimuli built;
   for (const protocols::PresentedStimulus& stimulus : stimuli) {
-    const ModelLibrary::Plate plate =
-        stimulus.technique->needs_model() ? models.plate_of(protocol, stimulus) : nullptr;
-    built.plates.push_back(plate);
+    const ModelLibrary::Divided plate = models.divided(
+        stimulus,
+        stimulus.technique->needs_model() ? models.plate_of(protocol, stimulus) : nullptr);
+    built.plates.insert(built.plates.end(), {plate.device, plate.actuator});
     built.alternatives.push_back(core::make_renderer(*stimulus.technique, stimulus.rendering,
                                                      touched_shape(stimulus.plate->shape),
-                                                     plate.get()));
+                                                     plate.device.get()));
+    if (actuator != nullptr) {
+      built.voices.push_back(core::make_voice(*stimulus.technique, stimulus.rendering,
+                                              plate.actuator.get(), actuator->response,
+                                              1.0 / actuator->rate_hz));
+    }
   }
   return built;
 }

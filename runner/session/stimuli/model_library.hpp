@@ -12,6 +12,8 @@
 #include "core/model/modal_model.hpp"
 #include "core/model/model_cache.hpp"
 #include "core/model/plate_model.hpp"
+#include "core/settings/actuator_settings.hpp"
+#include "core/tick/actuator_voice.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "core/tick/vibrating_plate.hpp"
 #include "protocols/axes/presented_stimulus.hpp"
@@ -87,6 +89,14 @@ class ModelLibrary {
   // What `mesh: auto` asks for in this study: its bodies are solved to the usual accuracy for that.
   AutomaticMesh automatic_mesh(const protocols::Protocol& protocol);
 
+  // What device and actuator render of a plate. Without a crossover all is the device's, and the
+  // other is null.
+  struct Divided {
+    Plate device;
+    Plate actuator;
+  };
+  Divided divided(const protocols::PresentedStimulus& stimulus, const Plate& whole);
+
   int bodies_solved() const { return solved_; }  // not found in memory or on disk
   int bodies_used() const { return static_cast<int>(bodies_.size()); }
 
@@ -102,6 +112,7 @@ class ModelLibrary {
   core::ErrorEstimation estimation_;
   std::map<std::string, Body> bodies_;  // by content key
   std::map<std::string, Plate> plates_;
+  std::map<Plate, Divided> divided_;  // of those
   int solved_{0};
 };
 
@@ -109,12 +120,15 @@ class ModelLibrary {
 struct TrialStimuli {
   std::vector<ModelLibrary::Plate> plates;
   std::vector<core::TapRenderer> alternatives;
+  std::vector<core::ActuatorVoice> voices;  // of the alternatives, if an actuator renders them
 };
 
 // Of stimuli as they are presented; after ModelLibrary::build_all without meshing or solving.
+// actuator: that which renders its share of them; nullptr: nobody does.
 TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
                                  const std::vector<protocols::PresentedStimulus>& stimuli,
-                                 ModelLibrary& models);
+                                 ModelLibrary& models,
+                                 const core::ActuatorOutput* actuator = nullptr);
 // Of these, at their own values.
 TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
                                  const std::vector<std::string>& stimuli, ModelLibrary& models);

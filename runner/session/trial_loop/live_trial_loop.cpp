@@ -59,6 +59,48 @@ class Following {
 };
 }  // namespace
 
+// RAII: the actuator renders a trial's voices during this object's lifetime.
+class Actuating {
+ public:
+  Actuating(device::ActuatorPlayer* player, std::span<core::ActuatorVoice> voices)
+      : player_{player} {
+    if (player_ != nullptr) {
+      player_->begin(voices);
+    }
+  }
+  ~Actuating() {
+    if (player_ != nullptr) {
+      player_->end();
+    }
+  }
+  // The trial is over.
+  void add_events(device::Nanoseconds began_at, std::vector<results::EventRow>& events) const {
+    if (player_ == nullptr) {
+      return;
+    }
+    const device::Actuated actuated = player_->end();
+    events.insert(events.begin(), {0.0, "actuator", player_->delay_s()});
+    if (actuated.underruns > 0) {
+      events.push_back({0.0, "actuator_underrun", static_cast<double>(actuated.underruns)});
+    }
+    if (actuated.limited > 0) {
+      events.push_back({0.0, "actuator_limited", static_cast<double>(actuated.limited)});
+    }
+    if (actuated.loss) {
+      const std::chrono::nanoseconds at = actuated.loss->at.time_since_epoch();
+      events.push_back(
+          {std::max(0.0, 1e-9 * static_cast<double>(at.count() - began_at)), "actuator_lost", 0.0});
+    }
+  }
+  Actuating(const Actuating& other) = delete;
+  Actuating& operator=(const Actuating& other) = delete;
+  Actuating(Actuating&&) = delete;
+  Actuating& operator=(Actuating&&) = delete;
+
+ private:
+  device::ActuatorPlayer* player_;
+};
+
 TrialResult LiveTrialLoop::run(const Rendered& rendered, const Explore& explore) {
   core::SpscRing<core::TraceSample> ring{ring_capacity};
   results::TraceCollector collector{ring};
@@ -72,6 +114,13 @@ TrialResult LiveTrialLoop::run(const Rendered& rendered, const Explore& explore)
       watch_(sample, std::chrono::steady_clock::time_point{since_boot});
     });
   }
+  if (actuator_ != nullptr) {
+    if (const auto loss = actuator_->loss()) {
+      throw device::DeviceError{fmt::format("the actuator plays no more ({})", loss->why)};
+    }
+    loop.tell(actuator_->ticks());
+  }
+  const Actuating actuating{actuator_, rendered.voices};
   std::atomic<bool> has_ended{false};
   {
     const Following following{recorder_, collector};
@@ -84,7 +133,9 @@ TrialResult LiveTrialLoop::run(const Rendered& rendered, const Explore& explore)
     explore(exploration);
   }  // the haptic thread has commanded zero force and ended
   stop_ = loop.report().stop;
-  return {collector.finish(), loop.report(), static_cast<std::int64_t>(ring.dropped())};
+  TrialResult result{collector.finish(), loop.report(), static_cast<std::int64_t>(ring.dropped())};
+  actuating.add_events(loop.began_at(), result.trace.events);
+  return result;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/settings/device_settings.hpp"
+#include "device/audio/actuator_player.hpp"
 #include "device/audio/audio_player.hpp"
 #include "results/store/recorder.hpp"
 #include "runner/session/trial_loop/trial_loop.hpp"
@@ -26,6 +27,8 @@ class LiveTrialLoop final : public TrialLoop {
   void watch(Watch watch) { watch_ = std::move(watch); }
   // From the next trial on.
   void use(device::Device& device) { device_ = &device; }
+  // Plays what the actuator renders of each trial; see results::EventRow for what is stored of it.
+  void use(device::ActuatorPlayer& actuator) { actuator_ = &actuator; }
   TrialResult run(const Rendered& rendered, const Explore& explore) override;
   bool is_force_off() const override {
     return stop_ == device::StopOutcome::confirmed || device_->is_force_off();
@@ -37,6 +40,7 @@ class LiveTrialLoop final : public TrialLoop {
   device::LoopSettings settings_;
   core::RealtimeRequest realtime_;
   results::Recorder& recorder_;
+  device::ActuatorPlayer* actuator_{nullptr};
   Watch watch_;
 };
 

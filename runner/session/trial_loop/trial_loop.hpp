@@ -3,6 +3,7 @@
 #include <span>
 #include <utility>
 
+#include "core/tick/actuator_voice.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "device/hand/scripted_hand.hpp"
 #include "device/loop/haptic_loop.hpp"
@@ -16,10 +17,12 @@ struct TrialResult {
   std::int64_t dropped_samples{};
 };
 
-// A trial's haptic loop renders these, to the taps of the hand at the device or to scripted ones.
+// A trial's haptic loop renders these, to the taps of the hand at the device or to scripted ones,
+// and an actuator beside it its share of them, if there is one.
 struct Rendered {
   std::span<core::TapRenderer> alternatives;
   std::optional<device::RepeatedTap> scripted{};
+  std::span<core::ActuatorVoice> voices{};
 };
 
 // Runs the haptic loop over some alternatives while somebody explores them.

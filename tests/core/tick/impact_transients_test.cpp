@@ -19,7 +19,7 @@ RenderSettings settings_by_place() {
 }
 // A e^(-B t) sin(2 pi f t), two milliseconds after an impact at x.
 double force_n(double x_m) {
-  DecayingSinusoid sinusoid{settings_by_place()};
+  DecayingSinusoid sinusoid{settings_by_place().sinusoid, settings_by_place().dt_s};
   Contact contact;
   contact.god_object_m = {x_m, 0.07, 0.0};
   sinusoid.touch(contact);
@@ -47,7 +47,7 @@ TEST_CASE("a sinusoid by place changes amplitude and frequency in proportion to 
 }
 
 TEST_CASE("a sinusoid that rings keeps the frequency of its impact", "[core][tick]") {
-  DecayingSinusoid sinusoid{settings_by_place()};
+  DecayingSinusoid sinusoid{settings_by_place().sinusoid, settings_by_place().dt_s};
   Contact contact;
   contact.god_object_m = {-0.2, 0.0, 0.0};
   sinusoid.touch(contact);
@@ -105,7 +105,7 @@ TEST_CASE(
   CAPTURE(rate_hz, speed_m_s);
   const auto settings = with_taps(rate_hz, {{{0.0, 0.0}, 0.3, sampled_n(rate_hz, 0.3, 0.2)}});
   const auto recorded = player(settings);
-  core::DecayingSinusoid sinusoid{settings};
+  core::DecayingSinusoid sinusoid{settings.sinusoid, settings.dt_s};
   touch(*recorded, 0.0, 0.0);
   recorded->impact(speed_m_s);
   sinusoid.impact(speed_m_s);

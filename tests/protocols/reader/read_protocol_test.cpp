@@ -276,6 +276,10 @@ TEST_CASE("what makes no sense as a study is refused", "[protocols]") {
       {"rate_hz: 1000", "rate_hz: .nan", "rendering.rate_hz: nan is not allowed"},
       {"rate_hz: 1000", "rate_hz: 1e999", "rendering.rate_hz"},
       {"rate_hz: 1000", "rate_hz: 500", "rendering.band_limit_hz: is not below half of rate_hz"},
+      {"band_limit_hz: 300", "band_limit_hz: 900\n  crossover_hz: [280, 200]",
+       "rendering.crossover_hz: does not ascend"},
+      {"band_limit_hz: 300", "band_limit_hz: 900\n  crossover_hz: [200, 500]",
+       "rendering.crossover_hz: does not end below half of rate_hz"},
       {"repetitions: 2", "repetitions: 0", "blocks[0].repetitions: 0 is not allowed"},
       {"repetitions: 2", "repetitions: 2.5", "blocks[0].repetitions: '2.5' is not a whole number"},
       {"size_m: [0.6, 0.6, 0.05]", "size_m: [0.6, 0.6]", "is not a list of 3 numbers"},
@@ -300,6 +304,16 @@ TEST_CASE("what makes no sense as a study is refused", "[protocols]") {
   }));
   INFO(from << " → " << to);
   CHECK_THAT(refusal(replaced(discrimination(), from, to)), Contains(said));
+}
+
+TEST_CASE(
+    "with a crossover modes beyond the loop's rate are an actuator's, but not a coupled finger's",
+    "[protocols][actuator]") {
+  const std::string divided = replaced(discrimination(), "band_limit_hz: 300",
+                                       "band_limit_hz: 2000\n  crossover_hz: [200, 300]");
+  CHECK(refusal(divided) == "accepted");
+  CHECK_THAT(refusal(replaced(divided, "technique: fem", "technique: fem-coupled")),
+             Contains("needs rendering without crossover_hz"));
 }
 
 TEST_CASE("an interaction and an equivalence are refused where nothing could be tested",

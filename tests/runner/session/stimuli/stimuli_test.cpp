@@ -36,7 +36,7 @@ Presented presented(const protocols::Protocol& protocol, const AxisValues& asked
   for (const char* point : {"P", "Q"}) {
     const runner::ScriptedTap tap{seen.stimulus,
                                   runner::point_on_plate(point, *seen.stimulus.plate), 0.3, 0.2};
-    const auto trace = runner::trace_of(tap, protocol, runner::simulated_rig(), models);
+    const auto trace = runner::trace_of(tap, protocol, runner::simulated_rig(), models).ticks;
     seen.traces.insert(seen.traces.end(), trace.begin(), trace.end());
   }
   CHECK(models.bodies_solved() == solved);  // a member is neither meshed nor solved

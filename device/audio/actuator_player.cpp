@@ -1,0 +1,90 @@
+#include "device/audio/actuator_player.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "device/audio/pace.hpp"
+#include "device/loop/realtime.hpp"
+namespace tapstudy::device {
+namespace {
+constexpr double fastest_card = 1.002;  // against this machine's clock
+
+double delay_of(const PcmSink& sink) {
+  return static_cast<double>(sink.buffer_frames() + sink.period_frames()) / sink.rate_hz();
+}
+
+std::int64_t now_ns() noexcept {
+  return std::chrono::nanoseconds{std::chrono::steady_clock::now().time_since_epoch()}.count();
+}
+}  // namespace
+
+ActuatorPlayer::ActuatorPlayer(std::unique_ptr<PcmSink> sink, const Settings& settings)
+    : sink_{std::move(sink)},
+      realtime_{settings.realtime},
+      delay_s_{delay_of(*sink_)},
+      clock_{sink_->rate_hz(), static_cast<double>(sink_->period_frames())},
+      period_(sink_->period_frames()),
+      source_{
+          {sink_->rate_hz(), settings.full_scale_n, settings.limits, settings.tick_s, delay_s_}},
+      thread_{[this] { run(); }} {}
+
+ActuatorPlayer::~ActuatorPlayer() {
+  is_ending_ = true;
+  thread_.join();
+}
+
+void ActuatorPlayer::begin(std::span<core::ActuatorVoice> voices) {
+  const std::lock_guard lock{mutex_};
+  source_.use(voices);
+  actuated_ = {0, 0, actuated_.rate_error, actuated_.jitter_s, actuated_.loss};
+}
+
+Actuated ActuatorPlayer::end() {
+  const std::lock_guard lock{mutex_};
+  actuated_.limited = source_.limited();
+  source_.use({});
+  return actuated_;
+}
+
+std::optional<AudioLoss> ActuatorPlayer::loss() {
+  const std::lock_guard lock{mutex_};
+  return actuated_.loss;
+}
+
+void ActuatorPlayer::run() {
+  ask_for_realtime(realtime_);
+  sink_->begin();
+  Pace pace{*sink_, fastest_card};
+  bool is_lost = false;
+  while (!is_ending_ && !is_lost) {
+    play(now_ns());
+    is_lost = loss().has_value();
+    pace.wait_after(period_.size());
+  }
+  sink_->end();
+}
+
+void ActuatorPlayer::play(std::int64_t now) {
+  const double frame_ns = 1e9 / sink_->rate_hz();
+  const auto ahead = static_cast<double>(sink_->delay_frames().value_or(0));
+  clock_.measured(static_cast<double>(now) + ahead * frame_ns);
+  {
+    const std::lock_guard lock{mutex_};
+    source_.fill(period_, clock_.first_frame_ns(), clock_.frame_ns(), now);
+  }
+  note(sink_->write(period_));
+}
+
+void ActuatorPlayer::note(PcmOutcome outcome) {
+  lost_in_a_row_ = outcome == PcmOutcome::lost ? lost_in_a_row_ + 1 : 0;
+  const bool takes_nothing = lost_in_a_row_ >= max_lost_in_a_row;
+  const std::lock_guard lock{mutex_};
+  actuated_.underruns += outcome == PcmOutcome::underrun || outcome == PcmOutcome::lost ? 1 : 0;
+  actuated_.rate_error = clock_.rate_error();
+  actuated_.jitter_s = clock_.jitter_s();
+  if (outcome == PcmOutcome::gone || takes_nothing) {
+    actuated_.loss = AudioLoss{takes_nothing ? "the card takes no samples" : sink_->failure(),
+                               std::chrono::steady_clock::now()};
+  }
+}
+}  // namespace tapstudy::device

@@ -1,0 +1,107 @@
+#include "device/audio/actuator_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+namespace tapstudy::device {
+namespace {
+constexpr std::size_t ring_capacity = 1024;
+constexpr double bridge_s = 1e-3;
+constexpr double most_periods_without_tick = 2.0;
+}  // namespace
+
+ActuatorSource::ActuatorSource(const Settings& settings)
+    : settings_{settings},
+      ticks_{ring_capacity},
+      samples_a_tick_{
+          static_cast<int>(std::max(1L, std::lround(settings.tick_s * settings.rate_hz)))},
+      limiter_{{std::min(settings.limits.peak_n, settings.full_scale_n), settings.limits.rms_n},
+               1.0 / settings.rate_hz} {}
+
+void ActuatorSource::use(std::span<core::ActuatorVoice> voices) noexcept {
+  take_ticks();
+  first_ = count_ = 0;  // of the trial before
+  heard_ = nullptr;
+  voices_ = voices;
+  limited_ = 0;
+  bridge_gap();
+}
+
+void ActuatorSource::fill(std::span<float> samples, double heard_at_ns, double frame_ns,
+                          std::int64_t now_ns) noexcept {
+  take_ticks();
+  const double without_tick_s = 1e-9 * static_cast<double>(now_ns - newest_ns_);
+  if (without_tick_s > most_periods_without_tick * settings_.tick_s) {
+    if (heard_ != nullptr && !has_faded_) {
+      heard_->fade(static_cast<int>(samples.size()));
+      has_faded_ = true;
+    }
+    first_ = count_ = 0;
+  }
+  double at_ns = heard_at_ns - 1e9 * settings_.delay_s;
+  for (float& sample : samples) {
+    const double wanted_n = next_force_n(at_ns);
+    const double passed_n = limiter_.limited(wanted_n);
+    limited_ += passed_n == wanted_n ? 0 : 1;
+    sample = static_cast<float>(passed_n / settings_.full_scale_n);
+    at_ns += frame_ns;
+  }
+}
+
+// What does not fit has waited for longer than any card buffers: the oldest is dropped.
+void ActuatorSource::take_ticks() noexcept {
+  core::ActuatorTick tick{};
+  while (ticks_.try_pop(tick)) {
+    newest_ns_ = tick.at_ns;
+    if (count_ == waiting_.size()) {
+      first_ = (first_ + 1) % waiting_.size();
+      --count_;
+    }
+    waiting_[(first_ + count_++) % waiting_.size()] = tick;
+  }
+}
+
+const core::ActuatorTick* ActuatorSource::due(double at_ns) noexcept {
+  if (count_ == 0 || static_cast<double>(waiting_[first_].at_ns) > at_ns) {
+    return nullptr;
+  }
+  const core::ActuatorTick& tick = waiting_[first_];
+  first_ = (first_ + 1) % waiting_.size();
+  --count_;
+  return &tick;
+}
+
+double ActuatorSource::next_force_n(double at_ns) noexcept {
+  if (heard_ != nullptr) {
+    heard_->advance();
+  }
+  while (const core::ActuatorTick* const tick = due(at_ns)) {
+    begin(*tick);
+  }
+  const double rendered_n = heard_ == nullptr ? 0.0 : heard_->force_n();
+  if (bridge_left_ > 0) {
+    bridged_n_ = --bridge_left_ == 0 ? 0.0 : bridged_n_ - bridge_step_n_;
+  }
+  last_n_ = rendered_n + bridged_n_;
+  return last_n_;
+}
+
+void ActuatorSource::begin(const core::ActuatorTick& tick) noexcept {
+  if (tick.alternative >= voices_.size()) {
+    return;
+  }
+  core::ActuatorVoice* const voice = &voices_[tick.alternative];
+  if (voice != heard_) {
+    bridge_gap();
+    voice->reset();
+    heard_ = voice;
+  }
+  has_faded_ = false;
+  voice->begin(tick, samples_a_tick_);
+}
+
+void ActuatorSource::bridge_gap() noexcept {
+  bridge_left_ = std::max(1, static_cast<int>(std::lround(bridge_s * settings_.rate_hz)));
+  bridged_n_ = last_n_;
+  bridge_step_n_ = last_n_ / bridge_left_;
+}
+}  // namespace tapstudy::device

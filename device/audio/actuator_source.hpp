@@ -1,0 +1,62 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/tick/actuator_voice.hpp"
+#include "core/tick/spsc_ring.hpp"
+namespace tapstudy::device {
+// Renders the actuator's samples from what the haptic loop tells of its ticks, each a fixed delay
+// after its time. Everything but `ticks` is the audio thread's.
+//
+// The ticks cease when the loop has stalled, faulted or ended: two of its periods without one end
+// what is heard within a period of samples. Where one waveform ends and another begins, or none,
+// the difference fades over a millisecond.
+class ActuatorSource {
+ public:
+  struct Settings {
+    double rate_hz{};
+    double full_scale_n{};
+    core::ActuatorLimits limits;
+    double tick_s{};   // of the haptic loop
+    double delay_s{};  // from a tick to its sound
+  };
+  explicit ActuatorSource(const Settings& settings);
+
+  // Of the haptic loop.
+  core::SpscRing<core::ActuatorTick>& ticks() noexcept { return ticks_; }
+  // The alternatives of the next trial; empty: silence. They must outlive it.
+  void use(std::span<core::ActuatorVoice> voices) noexcept;
+  // The next samples, of which the first is heard then and the others one after the other; it is
+  // now `now_ns`. All by the loop's clock.
+  void fill(std::span<float> samples, double heard_at_ns, double frame_ns,
+            std::int64_t now_ns) noexcept;
+  std::int64_t limited() const noexcept { return limited_; }  // samples, since use()
+
+ private:
+  void take_ticks() noexcept;
+  const core::ActuatorTick* due(double at_ns) noexcept;
+  void begin(const core::ActuatorTick& tick) noexcept;
+  double next_force_n(double at_ns) noexcept;
+  void bridge_gap() noexcept;
+
+  Settings settings_;
+  core::SpscRing<core::ActuatorTick> ticks_;
+  std::array<core::ActuatorTick, 64> waiting_{};  // a ring: taken, and not yet due
+  std::size_t first_{0};
+  std::size_t count_{0};
+  std::int64_t newest_ns_{0};
+  std::span<core::ActuatorVoice> voices_;
+  core::ActuatorVoice* heard_{nullptr};
+  bool has_faded_{false};
+  int samples_a_tick_;
+  double last_n_{0.0};     // the latest sample, before the limiter
+  double bridged_n_{0.0};  // what is left of a waveform that has ended
+  double bridge_step_n_{0.0};
+  int bridge_left_{0};
+  core::ActuatorLimiter limiter_;
+  std::int64_t limited_{0};
+};
+}  // namespace tapstudy::device

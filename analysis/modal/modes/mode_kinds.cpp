@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -257,25 +259,35 @@ std::string multiple_of(const RepeatedMode& mode, const Line& line) {
   return {};
 }
 
-// A product of two motions holds their sum and their difference alike: one without the other is a
-// mode that happens to lie there.
-bool has_other_sideband(const RepeatedMode& mode, const Line& carrier,
-                        const std::vector<RepeatedMode>& modes) {
-  const Line mirrored{2.0 * carrier.frequency_hz - hz(mode), 0.0, 2.0 * carrier.error_hz};
+bool is_seen_at(const Line& made, const RepeatedMode& mode,
+                const std::vector<RepeatedMode>& modes) {
   return std::ranges::any_of(modes, [&](const RepeatedMode& other) {
-    return other.standing != Standing::line && is_at(mirrored, other) &&
+    return other.standing != Standing::line && is_at(made, other) &&
            other.amplitude >= least_of_other_sideband * mode.amplitude;
   });
 }
 
+// A product of two motions holds their sum and their difference alike: one without the other is a
+// mode that happens to lie there. A difference below 0 is seen above it.
+bool has_other_sideband(const RepeatedMode& mode, const Line& carrier, bool is_below_0,
+                        const std::vector<RepeatedMode>& modes) {
+  const double difference_hz = is_below_0 ? -hz(mode) : hz(mode);
+  const double mirrored_hz = std::abs(2.0 * carrier.frequency_hz - difference_hz);
+  return is_seen_at({mirrored_hz, 0.0, 2.0 * carrier.error_hz}, mode, modes);
+}
+
 // "45.9 Hz - 6.9 Hz", "45.9 Hz + 2 times 6.9 Hz", or empty.
-std::string sum_of(const RepeatedMode& mode, const Line& a, const Line& b) {
+std::string sum_of(const RepeatedMode& mode, const Line& a, const Line& b,
+                   const std::vector<RepeatedMode>& modes) {
   for (int n = 1; n <= highest_multiple; ++n) {
     const std::string times = n > 1 ? fmt::format("{} times ", n) : "";
     for (const double sign : {-1.0, 1.0}) {
-      const Line made{a.frequency_hz + sign * n * b.frequency_hz, a.decay_per_s + n * b.decay_per_s,
+      const double sum_hz = a.frequency_hz + sign * n * b.frequency_hz;
+      const Line made{std::abs(sum_hz), a.decay_per_s + n * b.decay_per_s,
                       a.error_hz + n * b.error_hz};
-      if (made.frequency_hz > 0.0 && is_made_as(made, mode)) {
+      const bool is_of_other = n == 1 && sum_hz < 0.0;  // a sideband of the faster one
+      if (!is_of_other && is_made_as(made, mode) &&
+          has_other_sideband(mode, a, sum_hz < 0.0, modes)) {
         return fmt::format("{:.5g} Hz {} {}{:.5g} Hz", a.frequency_hz, sign < 0.0 ? "-" : "+",
                            times, b.frequency_hz);
       }
@@ -289,11 +301,54 @@ std::string made_of(const RepeatedMode& mode, const RepeatedMode& one, const Rep
   if (outlasts(mode, one) || outlasts(mode, other)) {
     return {};
   }
-  if (&one == &other) {
-    return multiple_of(mode, line_of(one));
+  return &one == &other ? multiple_of(mode, line_of(one))
+                        : sum_of(mode, line_of(one), line_of(other), modes);
+}
+
+constexpr std::array<std::array<double, 2>, 4> signs_of_three{
+    {{1.0, 1.0}, {1.0, -1.0}, {-1.0, 1.0}, {-1.0, -1.0}}};
+
+// What a cubic curve, as of an amplifier near its limit, makes of three motions holds all sums and
+// differences of them: one of them without any other is a mode that happens to lie there.
+std::string sum_of_three(const RepeatedMode& mode, const std::array<Line, 3>& lines,
+                         const std::vector<RepeatedMode>& modes) {
+  const auto& [a, b, c] = lines;
+  const auto made_by = [&](const std::array<double, 2>& signs) {
+    return Line{std::abs(a.frequency_hz + signs[0] * b.frequency_hz + signs[1] * c.frequency_hz),
+                a.decay_per_s + b.decay_per_s + c.decay_per_s,
+                a.error_hz + b.error_hz + c.error_hz};
+  };
+  for (const auto& signs : signs_of_three) {
+    if (!is_made_as(made_by(signs), mode)) {
+      continue;
+    }
+    const bool has_another = std::ranges::any_of(signs_of_three, [&](const auto& others) {
+      return others != signs && is_seen_at(made_by(others), mode, modes);
+    });
+    if (has_another) {
+      return fmt::format("{:.5g} Hz {} {:.5g} Hz {} {:.5g} Hz", a.frequency_hz,
+                         signs[0] < 0.0 ? "-" : "+", b.frequency_hz, signs[1] < 0.0 ? "-" : "+",
+                         c.frequency_hz);
+    }
   }
-  return has_other_sideband(mode, line_of(one), modes) ? sum_of(mode, line_of(one), line_of(other))
-                                                       : std::string{};
+  return {};
+}
+
+// Of any three of the stronger modes, or empty.
+std::string product_of_three(const RepeatedMode& mode, const std::vector<RepeatedMode>& stronger,
+                             const std::vector<RepeatedMode>& modes) {
+  for (std::size_t i = 0; i < stronger.size(); ++i) {
+    for (std::size_t k = i + 1; k < stronger.size(); ++k) {
+      for (std::size_t l = k + 1; l < stronger.size(); ++l) {
+        std::string made = sum_of_three(
+            mode, {line_of(stronger[i]), line_of(stronger[k]), line_of(stronger[l])}, modes);
+        if (!made.empty()) {
+          return made;
+        }
+      }
+    }
+  }
+  return {};
 }
 
 std::string made_with(const RepeatedMode& mode, const RepeatedMode& one,
@@ -330,7 +385,11 @@ std::string combination_of(const RepeatedMode& mode, const std::vector<RepeatedM
       }
     }
   }
-  return {};
+  std::vector<RepeatedMode> stronger;
+  std::ranges::copy_if(modes, std::back_inserter(stronger), [&](const RepeatedMode& other) {
+    return is_stronger(other) && !outlasts(mode, other);
+  });
+  return product_of_three(mode, stronger, modes);
 }
 }  // namespace
 

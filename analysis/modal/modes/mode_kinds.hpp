@@ -50,7 +50,8 @@ using Likeness = std::function<double(std::size_t, std::size_t)>;
 // combination_weakness, is a combination, unless it rings longer than what would make it or the
 // other sideband, f ∓ n g, is not seen. A slow motion g that modulates a fast one need only be
 // stronger as a displacement, of which `derivatives` were measured (2: acceleration); the sidebands
-// move as the fast one does, where shapes are known (likeness at least like_carrier). Modes in
+// move as the fast one does, where shapes are known (likeness at least like_carrier). So are sums
+// and differences of three stronger modes, f ± g ± h, of which a second one is seen. Modes in
 // ascending frequency.
 inline constexpr double like_carrier = 0.5;
 void mark_combinations(std::vector<RepeatedMode>& modes, int derivatives = 0,

@@ -578,6 +578,38 @@ TEST_CASE("what rings longer than the motions that would make it is no product o
   CHECK(modes[3].standing == Standing::agreed);
 }
 
+TEST_CASE("what a cubic curve makes of three motions is no mode, one such sum alone is",
+          "[analysis][modal]") {
+  // the product of three decays by the sum of their rates
+  const auto at = [](double hz, double rate_hz, double amplitude) {
+    return certain_mode(hz, rate_hz / hz, amplitude);
+  };
+  std::vector<RepeatedMode> modes{at(97.0, 6.0, 0.05),  at(303.0, 1.5, 1.0),  at(500.0, 2.0, 0.8),
+                                  at(706.0, 2.5, 0.6),  at(509.0, 2.0, 0.05), at(930.0, 6.0, 0.03),
+                                  at(1509.0, 6.0, 0.05)};
+  std::ranges::sort(modes, {}, [](const RepeatedMode& mode) { return mode.frequency_hz.value; });
+  const auto named = [&](double hz) {
+    return *std::ranges::find_if(
+        modes, [hz](const RepeatedMode& mode) { return mode.frequency_hz.value == hz; });
+  };
+  mark_combinations(modes);
+  CHECK(named(97.0).standing == Standing::combination);  // 303 + 500 - 706
+  CHECK_THAT(named(97.0).why, Contains("303 Hz + 500 Hz - 706 Hz"));
+  CHECK(named(930.0).standing == Standing::agreed);  // 27 Hz from 706 + 500 - 303
+  CHECK(named(509.0).standing == Standing::agreed);  // 706 + 303 - 500, but outlasts it
+  CHECK(named(1509.0).standing == Standing::combination);
+  // one alone happens to lie there
+  std::erase_if(modes, [](const RepeatedMode& mode) {
+    return mode.frequency_hz.value > 1000.0 || mode.amplitude == 0.03 ||
+           mode.frequency_hz.value == 509.0;
+  });
+  for (RepeatedMode& mode : modes) {
+    mode.standing = Standing::agreed;
+  }
+  mark_combinations(modes);
+  CHECK(named(97.0).standing == Standing::agreed);
+}
+
 TEST_CASE("what fewer than a third of the taps show is doubtful, weak modes of many are not",
           "[analysis][modal]") {
   std::vector<RepeatedMode> modes{certain_mode(300.0, 0.01, 1.0), certain_mode(700.0, 0.01, 0.5),

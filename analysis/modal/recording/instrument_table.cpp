@@ -1,5 +1,7 @@
 #include "analysis/modal/recording/instrument_table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -131,10 +133,100 @@ std::vector<std::string> units_of_labview(const std::vector<std::string_view>& l
                                           const FirstNumbers& first) {
   for (std::size_t i = first.line; i-- > 0;) {
     if (lines[i].starts_with("Y_Unit_Label")) {
-      return cells_of(lines[i], first.separator);
+      std::vector<std::string> units = cells_of(lines[i], first.separator);
+      const bool is_above_time = lines[first.line - 1].starts_with("X_Value");
+      units.erase(units.begin(), units.begin() + (is_above_time ? 0 : 1));
+      return units;
     }
   }
   return {};
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  constexpr std::string_view byte_order_mark_utf8 = "\xEF\xBB\xBF";
+  text.remove_prefix(text.starts_with(byte_order_mark_utf8) ? byte_order_mark_utf8.size() : 0);
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    lines.back().remove_suffix(lines.back().ends_with('\r') ? 1 : 0);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+// The rows of numbers of a file in which LabVIEW saved no times (X_Columns No): an empty cell
+// stands in their place.
+struct RowsWithoutTimes {
+  std::size_t names{};  // line of the columns' names
+  char separator{};
+  std::vector<double> first_s;     // of each channel
+  std::vector<double> interval_s;  // likewise
+};
+
+std::vector<double> labview_numbers(std::string_view line, char separator) {
+  std::vector<double> numbers;
+  for (std::string cell : cells_of(line, separator)) {
+    std::ranges::replace(cell, ',', '.');
+    if (const auto number = core::number_in<double>(cell)) {
+      numbers.push_back(*number);
+    }
+  }
+  return numbers;
+}
+
+std::optional<RowsWithoutTimes> rows_without_times(const std::vector<std::string_view>& lines) {
+  constexpr std::string_view separator_line = "Separator";
+  if (lines.empty() || !lines.front().starts_with("LabVIEW Measurement")) {
+    return std::nullopt;
+  }
+  RowsWithoutTimes rows;
+  bool has_times = true;
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+    const std::string_view line = lines[i];
+    if (line.starts_with(separator_line) && line.size() > separator_line.size()) {
+      rows.separator = line[separator_line.size()];
+    } else if (line.starts_with("X_Columns")) {
+      has_times = !line.ends_with("No");
+    } else if (line.starts_with("X0")) {
+      rows.first_s = labview_numbers(line, rows.separator);
+    } else if (line.starts_with("Delta_X")) {
+      rows.interval_s = labview_numbers(line, rows.separator);
+    } else if (line.starts_with("***End_of_Header***")) {
+      rows.names = i + 1;
+    }
+  }
+  const bool are_empty = !has_times && rows.names + 1 < lines.size() &&
+                         lines[rows.names + 1].starts_with(rows.separator);
+  return are_empty ? std::optional{rows} : std::nullopt;
+}
+
+bool are_alike(const std::vector<double>& values) {
+  return !values.empty() && std::ranges::count(values, values.front()) == std::ssize(values);
+}
+
+// With the times that the header states, where it states the same ones of all channels.
+std::string with_times_of_labview(const std::string& text) {
+  const std::vector<std::string_view> lines = lines_of(text);
+  const auto rows = rows_without_times(lines);
+  if (!rows) {
+    return text;
+  }
+  const bool have_times = are_alike(rows->first_s) && are_alike(rows->interval_s);
+  std::string filled;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    std::string line{lines[i]};
+    if (i >= rows->names && line.starts_with(rows->separator)) {
+      std::string time = i == rows->names ? "X_Value" : "";
+      if (have_times && i > rows->names) {
+        const auto row = static_cast<double>(i - rows->names - 1);
+        time = fmt::format("{:.17g}", rows->first_s.front() + row * rows->interval_s.front());
+      }
+      line = have_times ? time + line : line.substr(1);
+    }
+    filled += line + "\n";
+  }
+  return filled;
 }
 
 struct Header {
@@ -167,19 +259,6 @@ Header header_above(const std::vector<std::string_view>& lines, const FirstNumbe
   return {joined_by(first.separator == blank ? '\t' : first.separator, cells, first.cells), units};
 }
 
-std::vector<std::string_view> lines_of(std::string_view text) {
-  constexpr std::string_view byte_order_mark_utf8 = "\xEF\xBB\xBF";
-  text.remove_prefix(text.starts_with(byte_order_mark_utf8) ? byte_order_mark_utf8.size() : 0);
-  std::vector<std::string_view> lines;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    lines.push_back(text.substr(0, end));
-    lines.back().remove_suffix(lines.back().ends_with('\r') ? 1 : 0);
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return lines;
-}
-
 // A header in quotes may be of several lines, and a table of one header needs no help.
 bool is_plain(const std::vector<std::string_view>& lines, const FirstNumbers& first) {
   std::size_t headers = 0;
@@ -196,10 +275,11 @@ bool is_plain(const std::vector<std::string_view>& lines, const FirstNumbers& fi
 }  // namespace
 
 PlainTable plain_table(const std::string& text) {
-  const std::vector<std::string_view> lines = lines_of(text);
+  const std::string timed = with_times_of_labview(text);
+  const std::vector<std::string_view> lines = lines_of(timed);
   const auto first = first_numbers(lines);
   if (!first || is_plain(lines, *first)) {
-    return {text, {}};
+    return {timed, {}};
   }
   const Header header = header_above(lines, *first);
   std::string plain;

@@ -12,7 +12,8 @@ struct PlainTable {
 // become cells separated by tabs, a header with more cells than the rows (LabVIEW's comments) loses
 // them, and a comment above the numbers that names as many columns as they have, one of them a
 // time, becomes the header. Units are those of a row below the names ("s,g", "(ms),(g)"), which
-// goes, or LabVIEW's (Y_Unit_Label). Rows of numbers: two successive lines of as many cells, all of
-// them numbers or, but for the first, empty. Anything else stays as it is.
+// goes, or LabVIEW's (Y_Unit_Label). Times that LabVIEW did not save (X_Columns No) are those of
+// its header (X0, Delta_X), unless its channels' differ. Rows of numbers: two successive lines of
+// as many cells, all of them numbers or, but for the first, empty. Anything else stays as it is.
 PlainTable plain_table(const std::string& text);
 }  // namespace tapstudy::analysis

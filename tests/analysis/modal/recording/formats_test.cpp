@@ -73,6 +73,39 @@ TEST_CASE("a table of an instrument is a recording whatever stands above its num
   check_samples(read_text(text, {}));
 }
 
+namespace {
+// As LabVIEW writes two channels without their times; the intervals between samples as stated.
+std::string labview_without_times(char separator, const std::string& intervals_s) {
+  std::string text =
+      "LabVIEW Measurement|\nWriter_Version|2\nSeparator|Tab\nX_Columns|No\n"
+      "***End_of_Header***|\n|\nChannels|2||\nY_Unit_Label|g|N|\nX0|0.5|0.5|\nDelta_X|" +
+      intervals_s + "|\n***End_of_Header***|||\n|Acc|Force|Comment\n";
+  for (int i = 0; i < count; ++i) {
+    text += fmt::format("|{:.9g}|{}\n", sample_at(i), i % 7);
+  }
+  std::ranges::replace(text, '|', separator);
+  return text;
+}
+}  // namespace
+
+TEST_CASE("samples without times are as far apart as the header of LabVIEW's file says",
+          "[analysis][recordings][formats]") {
+  const bool has_commas = GENERATE(false, true);
+  std::string text = labview_without_times(has_commas ? '\t' : ',', "0.0005|0.0005");
+  ReadingOptions options;
+  options.column = "Acc";
+  const Recording acc = read_text(has_commas ? with_decimal_commas(text) : text, options);
+  check_samples(acc);
+  CHECK_THAT(why_not_si(acc, Quantity::acceleration), Contains("--scale 9.80665"));
+  // of channels with rates of their own none is the table's
+  text = labview_without_times(',', "0.0005|0.001");
+  CHECK_THROWS_WITH(read_text(text, options), Contains("--rate"));
+  options.rate_hz = rate_hz;
+  const Recording given = read_text(text, options);
+  check_samples(given);
+  CHECK_THAT(why_not_si(given, Quantity::acceleration), Contains("--scale 9.80665"));
+}
+
 TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused with what helps",
           "[analysis][recordings][formats]") {
   std::string dates = "time,acc\n";

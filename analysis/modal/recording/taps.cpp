@@ -48,12 +48,14 @@ class TapFinder {
         finding_{finding},
         centred_{without(quantile(recording.samples, 0.5), recording.samples)},
         energies_{energies_of(centred_, recording.rate_hz)},
-        rails_{rail_samples(recording.samples, noise_rms())} {}
+        rails_{rail_samples(recording.samples, noise_rms())},
+        dropped_{dropped_samples(recording.samples, noise_rms())} {}
 
   double noise_rms() const { return std::sqrt(energies_.floor); }
 
   std::vector<Impact> impacts() const {
     std::vector<Impact> found = sensor_impacts(energies_, centred_, recording_.rate_hz);
+    std::erase_if(found, [&](const Impact& impact) { return is_after_gap(impact); });
     if (found.empty()) {
       throw core::InvalidInput{refusal(0)};
     }
@@ -85,6 +87,32 @@ class TapFinder {
   void remark(std::size_t onset, std::string kind, std::string detail) {
     found_.remarks.push_back(
         {static_cast<double>(onset) / recording_.rate_hz, std::move(kind), std::move(detail)});
+  }
+
+  double energy_between(std::size_t begin, std::size_t end) const {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < std::min(end, centred_.size()); ++i) {
+      sum += centred_[i] * centred_[i];
+    }
+    return sum;
+  }
+
+  // Whether a vibration only goes on there after dropped samples: a blow would give it energy.
+  bool is_after_gap(const Impact& impact) const {
+    constexpr double rises = 2.0;
+    const std::size_t reach = 2 * energies_.frame;
+    const auto first =
+        std::ranges::lower_bound(dropped_, impact.onset - std::min(impact.onset, reach));
+    if (first == dropped_.end() || *first > impact.onset + reach) {
+      return false;
+    }
+    auto last = first;
+    while (last + 1 != dropped_.end() && *(last + 1) == *last + 1) {
+      ++last;
+    }
+    const std::size_t around = frames_per_group * energies_.frame;
+    return energy_between(*last + 1, *last + 1 + around) <
+           rises * energy_between(*first - std::min(*first, around), *first);
   }
 
   std::size_t begin_of_decay(const Impact& impact, std::size_t last) {
@@ -186,6 +214,7 @@ class TapFinder {
   std::vector<double> centred_;
   Energies energies_;
   std::vector<std::size_t> rails_;
+  std::vector<std::size_t> dropped_;
   FoundTaps found_;
   int impact_{0};
 };
@@ -330,5 +359,17 @@ std::vector<std::size_t> rail_samples(const std::vector<double>& samples, double
   std::ranges::sort(rails);
   rails.erase(std::unique(rails.begin(), rails.end()), rails.end());
   return rails;
+}
+
+std::vector<std::size_t> dropped_samples(const std::vector<double>& samples, double noise_rms) {
+  constexpr std::size_t min_dropped = 4;
+  std::vector<std::size_t> dropped;
+  const double least = limited_steps * std::max(resolution_of(samples), noise_rms);
+  const auto is_gap = [&](std::size_t begin, std::size_t end) {
+    return end - begin >= min_dropped && begin > 0 && end < samples.size() &&
+           std::abs(samples[begin - 1]) > least && std::abs(samples[end]) > least;
+  };
+  add_runs_at(0.0, 0.0, samples, is_gap, dropped);
+  return dropped;
 }
 }  // namespace tapstudy::analysis

@@ -71,4 +71,9 @@ bool shows(const Tap& tap, const Recording& recording, const Resting& at_rest);
 // times the noise of these values, as a limited amplifier in front of a noisy converter gives them,
 // next to which the signal moves by more than six times the noise, and what it does within the run.
 std::vector<std::size_t> rail_samples(const std::vector<double>& samples, double noise_rms);
+
+// Sample numbers where samples were dropped: runs of four and more zeros from which the signal is
+// away by more than six times its noise and the converter's resolution on both sides. A signal that
+// passes through 0 so slowly does not leave it so suddenly.
+std::vector<std::size_t> dropped_samples(const std::vector<double>& samples, double noise_rms);
 }  // namespace tapstudy::analysis

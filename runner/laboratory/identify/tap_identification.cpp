@@ -71,17 +71,24 @@ bool is_dead(const Eigen::VectorXd& samples) {
 // What is known of a channel, whatever the tap.
 struct ChannelState {
   analysis::Resting at_rest;
-  std::vector<std::size_t> rails;  // see rail_samples
+  std::vector<std::size_t> rails;    // see rail_samples
+  std::vector<std::size_t> dropped;  // see dropped_samples
 
   bool is_clipped_in(const analysis::Tap& tap) const {
     const auto next = std::ranges::lower_bound(rails, tap.onset);
     return next != rails.end() && *next < tap.end;
   }
+
+  std::ptrdiff_t dropped_in(const analysis::Tap& tap) const {
+    return std::ranges::lower_bound(dropped, tap.end) -
+           std::ranges::lower_bound(dropped, tap.begin);
+  }
 };
 
 ChannelState state_of(const analysis::Recording& recording) {
   const analysis::Resting at_rest = analysis::resting(recording);
-  return {at_rest, analysis::rail_samples(recording.samples, at_rest.noise_rms)};
+  return {at_rest, analysis::rail_samples(recording.samples, at_rest.noise_rms),
+          analysis::dropped_samples(recording.samples, at_rest.noise_rms)};
 }
 
 class Identifier {
@@ -225,6 +232,13 @@ class Identifier {
            fmt::format("{} shows nothing above its noise, and is left out", recording.channel),
            {}});
       return false;
+    }
+    if (const auto dropped = state.dropped_in(tap); dropped > 0) {
+      tap_remarks_.add(
+          recording.file,
+          {one.time_s,
+           "zeros within its decay, as dropped samples leave them: they falsify damping",
+           fmt::format("{} of {} samples of {}", dropped, tap.end - tap.begin, recording.channel)});
     }
     one.decay.samples.array() -= one.decay.samples.mean();
     // not by its mean: what stopped has been accelerated

@@ -288,6 +288,19 @@ TEST_CASE("a decay begins after the last sample at the sensor's limit", "[analys
   CHECK_THAT(found.remarks.front().kind, Contains("clipped"));
 }
 
+TEST_CASE("a vibration that goes on after dropped samples was not struck there",
+          "[analysis][recordings]") {
+  Recording recording = testing::planted_recording(plate, {0.5, 1.5}, 4000.0, 2.5, 0.001, 4);
+  for (const double at_s : {0.53, 0.58, 1.55}) {
+    const auto begin = recording.samples.begin() + std::lround(at_s * recording.rate_hz);
+    std::fill(begin, begin + 8, 0.0);
+  }
+  const FoundTaps found = find_taps(recording, {});
+  REQUIRE(found.taps.size() == 2);
+  CHECK(static_cast<double>(found.taps[0].onset) / 4000.0 == Approx(0.5).margin(0.002));
+  CHECK(static_cast<double>(found.taps[1].onset) / 4000.0 == Approx(1.5).margin(0.002));
+}
+
 TEST_CASE("an amplifier's limit is found through the noise of the converter after it",
           "[analysis][recordings]") {
   Recording recording = testing::planted_recording(plate, {0.5}, 8000.0, 2.0, 0.0, 4);
@@ -320,6 +333,22 @@ TEST_CASE("a smooth crest that the converter's steps flatten is not clipped",
   const double crest = *std::ranges::max_element(samples);
   CHECK(std::ranges::count(samples, crest) > 3);
   CHECK(rail_samples(samples, 0.0).empty());
+}
+
+TEST_CASE("zeros between which a vibration jumps are dropped samples, a slow passage is none",
+          "[analysis][recordings]") {
+  const Recording recording = testing::planted_recording(plate, {0.5}, 4000.0, 2.0, 0.0, 4);
+  std::vector<double> samples;
+  for (const double sample : recording.samples) {
+    samples.push_back(std::round(200.0 * sample));  // of a coarse converter: rests at 0
+  }
+  CHECK(std::ranges::count(samples, 0.0) > 1000);
+  CHECK(dropped_samples(samples, 0.0).empty());
+  std::fill(samples.begin() + 2100, samples.begin() + 2112, 0.0);
+  const std::vector<std::size_t> dropped = dropped_samples(samples, 0.0);
+  REQUIRE(dropped.size() >= 12);
+  CHECK(dropped.front() >= 2099);
+  CHECK(dropped.back() <= 2112);
 }
 
 namespace {

@@ -132,13 +132,13 @@ struct EventRow {
   // the motion of the hand that tapped in the participant's place; of the masking noise, which is
   // played from before the first tick: masking (it was), and of the whole trial masking_underrun,
   // masking_cut (only where there were any) and masking_lost (the card plays no more); likewise
-  // actuator (a vibration actuator rendered its share), actuator_underrun, actuator_limited and
-  // actuator_lost
+  // actuator (a vibration actuator rendered its share), actuator_jitter, actuator_rate_error,
+  // actuator_underrun, actuator_limited and actuator_lost
   std::string kind;
   // impacts, scripted_taps: speed m/s; switch: position of the alternative; setting: the axis's
   // unit; masking: RMS in dB FS; masking_underrun, masking_cut: how many gaps, samples beyond full
-  // scale; actuator: its delay in s; actuator_underrun, actuator_limited: how many gaps, samples
-  // that its limits changed; else 0
+  // scale; actuator: delay s; actuator_jitter: RMS s; actuator_rate_error: of the card, less 1;
+  // actuator_underrun, actuator_limited: how many gaps, samples its limits changed; else 0
   double value{};
 };
 struct TraceChunk {

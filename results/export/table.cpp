@@ -99,7 +99,8 @@ std::vector<Column> columns_of_conduct() {
        "intervals), scripted_taps (a simulated hand taps in the participant's place, and its "
        "motion "
        "is in the trace), masking (noise is played), masking_underrun, masking_cut, masking_lost, "
-       "actuator (a vibration actuator renders its share), actuator_underrun, actuator_limited, "
+       "actuator (a vibration actuator renders its share), actuator_jitter, actuator_rate_error, "
+       "actuator_underrun, actuator_limited, "
        "actuator_lost, "
        "untraced (no trace was kept)"},
       {"value", real, "",
@@ -108,7 +109,9 @@ std::vector<Column> columns_of_conduct() {
        "the alternative; interval_replay: its number; setting: in the unit of the axis; masking: "
        "RMS "
        "level in dB of full scale; masking_underrun, masking_cut, actuator_underrun, "
-       "actuator_limited: count; actuator: its delay in s; otherwise 0"},
+       "actuator_limited: count; actuator: its delay in s; actuator_jitter: of the measured times "
+       "of the card, RMS in s; actuator_rate_error: the rate of the card against the clock of the "
+       "loop, less 1; otherwise 0"},
       {"position", integer, "", "Position of the alternative in its trial, from 0"},
       {"label", text, "", "What participants read; of an alternative its blind label"},
       {"is_comparison", boolean, "", "The comparison, not the standard"},

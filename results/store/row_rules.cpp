@@ -57,7 +57,8 @@ constexpr std::array rules{
          "SELECT DISTINCT kind FROM event WHERE kind NOT IN ('switch', 'contact', 'impact', "
          "'late_impact', 'release', 'untraced', 'setting', 'interval', 'interval_end', "
          "'interval_replay', 'scripted_taps', 'masking', 'masking_underrun', 'masking_cut', "
-         "'masking_lost', 'actuator', 'actuator_underrun', 'actuator_limited', 'actuator_lost')"},
+         "'masking_lost', 'actuator', 'actuator_jitter', 'actuator_rate_error', "
+         "'actuator_underrun', 'actuator_limited', 'actuator_lost')"},
     Rule{"no event stands twice",  // a person can set, set back and set again within one tick
          "SELECT kind || ' of trial ' || trial_id FROM event WHERE kind <> 'setting' "
          "GROUP BY trial_id, t_s, kind, value HAVING count(*) > 1"},

@@ -79,7 +79,9 @@ class Actuating {
       return;
     }
     const device::Actuated actuated = player_->end();
-    events.insert(events.begin(), {0.0, "actuator", player_->delay_s()});
+    events.insert(events.begin(), {{0.0, "actuator", player_->delay_s()},
+                                   {0.0, "actuator_jitter", actuated.jitter_s},
+                                   {0.0, "actuator_rate_error", actuated.rate_error}});
     if (actuated.underruns > 0) {
       events.push_back({0.0, "actuator_underrun", static_cast<double>(actuated.underruns)});
     }

@@ -141,8 +141,8 @@ core::ActuatorResponse read_actuator_response(MapReader& reader) {
   core::ActuatorResponse response;
   reader.list(
       {"points",
-       "as measured; between them straight lines over the logarithm of frequency, beyond them "
-       "constant"},
+       "as measured; straight lines between them over the logarithm of frequency, the nearest "
+       "beyond"},
       Presence::at_least_one, [&](MapReader& point) {
         std::vector<core::DeviceResponse::Point>& points = response.magnitude.points;
         const double frequency_hz =

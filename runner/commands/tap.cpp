@@ -216,19 +216,18 @@ TapTrace trace_of_tap(const TapOptions& options, const protocols::Protocol& prot
   return trace;
 }
 
-void run_tap(const TapOptions& options) {
-  const protocols::Protocol protocol = protocol_with_technique(options);
+void check(const TapOptions& options, const protocols::Protocol& protocol) {
   if (!options.script.empty() && !(options.panels.empty() && options.frames.empty())) {
     throw core::InvalidInput{"--script is of one trace (--csv): no --panels, no --frames"};
   }
   if (!options.settings.empty() && !options.panels.empty()) {
     throw core::InvalidInput{"--set is of one stimulus (--stimulus), --panels draws all of them"};
   }
-  if (!options.panels.empty()) {
-    draw_panels(options, protocol);
-    return;
+  if (!options.actuator_csv.empty() && !(protocol.rendering.crossover && options.panels.empty())) {
+    throw core::InvalidInput{
+        "--actuator-csv is of one trace (no --panels), of a protocol with rendering.crossover_hz"};
   }
-  if (options.stimulus.empty()) {
+  if (options.stimulus.empty() && options.panels.empty()) {
     throw core::InvalidInput{"--stimulus is required (or --panels DIR for all of them)"};
   }
   for (const std::string& file : {options.csv, options.actuator_csv, options.frames}) {
@@ -236,27 +235,38 @@ void run_tap(const TapOptions& options) {
       core::check_is_new(file);
     }
   }
+}
+
+// But for what goes to standard output.
+void write_files(const TapOptions& options, const TapTrace& trace) {
+  if (!options.actuator_csv.empty()) {
+    core::write_new_file(options.actuator_csv,
+                         [&](std::ostream& out) { write_actuator_csv(out, trace.actuator_n); });
+  }
+  if (!options.csv.empty() && options.csv != "-") {
+    core::write_new_file(options.csv, [&](std::ostream& out) { write_csv(out, trace.ticks); });
+  }
+}
+
+void run_tap(const TapOptions& options) {
+  const protocols::Protocol protocol = protocol_with_technique(options);
+  check(options, protocol);
+  if (!options.panels.empty()) {
+    draw_panels(options, protocol);
+    return;
+  }
   ModelLibrary models;
   const protocols::PresentedStimulus stimulus =
       member_set_to(options.settings, protocol, protocol.stimulus(options.stimulus));
   const TapTrace trace = options.script.empty()
                              ? trace_of_tap(options, protocol, stimulus, models)
                              : trace_of_script(options, protocol, stimulus, models);
-  if (!options.actuator_csv.empty()) {
-    if (!protocol.rendering.crossover) {
-      throw core::InvalidInput{"--actuator-csv: the protocol has no rendering.crossover_hz"};
-    }
-    core::write_new_file(options.actuator_csv,
-                         [&](std::ostream& out) { write_actuator_csv(out, trace.actuator_n); });
-  }
+  write_files(options, trace);
   if (options.csv == "-") {
     write_csv(std::cout, trace.ticks);
-    return;
+  } else {
+    print_summary(options, stimulus, trace);
   }
-  if (!options.csv.empty()) {
-    core::write_new_file(options.csv, [&](std::ostream& out) { write_csv(out, trace.ticks); });
-  }
-  print_summary(options, stimulus, trace);
 }
 }  // namespace
 

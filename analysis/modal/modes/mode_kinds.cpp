@@ -312,7 +312,9 @@ constexpr std::array<std::array<double, 2>, 4> signs_of_three{
 // differences of them: one of them without any other is a mode that happens to lie there.
 std::string sum_of_three(const RepeatedMode& mode, const std::array<Line, 3>& lines,
                          const std::vector<RepeatedMode>& modes) {
-  const auto& [a, b, c] = lines;
+  const Line& a = lines[0];
+  const Line& b = lines[1];
+  const Line& c = lines[2];
   const auto made_by = [&](const std::array<double, 2>& signs) {
     return Line{std::abs(a.frequency_hz + signs[0] * b.frequency_hz + signs[1] * c.frequency_hz),
                 a.decay_per_s + b.decay_per_s + c.decay_per_s,

@@ -205,6 +205,15 @@ bool are_alike(const std::vector<double>& values) {
   return !values.empty() && std::ranges::count(values, values.front()) == std::ssize(values);
 }
 
+// What stands in the empty cell of a line, if the header's times are of all channels.
+std::string time_at(std::size_t line, const RowsWithoutTimes& rows) {
+  if (line == rows.names) {
+    return "X_Value";
+  }
+  const auto row = static_cast<double>(line - rows.names - 1);
+  return fmt::format("{:.17g}", rows.first_s.front() + row * rows.interval_s.front());
+}
+
 // With the times that the header states, where it states the same ones of all channels.
 std::string with_times_of_labview(const std::string& text) {
   const std::vector<std::string_view> lines = lines_of(text);
@@ -217,12 +226,7 @@ std::string with_times_of_labview(const std::string& text) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     std::string line{lines[i]};
     if (i >= rows->names && line.starts_with(rows->separator)) {
-      std::string time = i == rows->names ? "X_Value" : "";
-      if (have_times && i > rows->names) {
-        const auto row = static_cast<double>(i - rows->names - 1);
-        time = fmt::format("{:.17g}", rows->first_s.front() + row * rows->interval_s.front());
-      }
-      line = have_times ? time + line : line.substr(1);
+      line = have_times ? time_at(i, *rows) + line : line.substr(1);
     }
     filled += line + "\n";
   }

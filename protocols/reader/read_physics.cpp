@@ -209,6 +209,21 @@ void read_crossover(MapReader& rendering, Protocol& protocol) {
                      "does not end below half of rate_hz: what the device renders would alias");
   }
 }
+
+void read_band(MapReader& rendering, Protocol& protocol) {
+  protocol.rate_hz =
+      rendering.number({"rate_hz", "update rate of the haptic loop"}, {500.0, 10000.0});
+  protocol.band_limit_hz = rendering.number(
+      {"band_limit_hz",
+       "modes above it are omitted; below half of rate_hz, unless there is a crossover"},
+      Range::positive(1e5));
+  read_crossover(rendering, protocol);
+  if (!protocol.rendering.crossover && protocol.band_limit_hz >= protocol.rate_hz / 2.0) {
+    rendering.reject("band_limit_hz",
+                     "is not below half of rate_hz: higher modes cannot be "
+                     "rendered and would alias");
+  }
+}
 }  // namespace
 
 void read_rendering(MapReader& top, Protocol& protocol) {
@@ -228,18 +243,7 @@ void read_rendering(MapReader& top, Protocol& protocol) {
   top.map(
       {"rendering", "haptic loop and contact forces"}, Presence::required,
       [&](MapReader& rendering) {
-        protocol.rate_hz =
-            rendering.number({"rate_hz", "update rate of the haptic loop"}, {500.0, 10000.0});
-        protocol.band_limit_hz = rendering.number(
-            {"band_limit_hz",
-             "modes above it are omitted; below half of rate_hz, unless there is a crossover"},
-            Range::positive(1e5));
-        read_crossover(rendering, protocol);
-        if (!settings.crossover && protocol.band_limit_hz >= protocol.rate_hz / 2.0) {
-          rendering.reject("band_limit_hz",
-                           "is not below half of rate_hz: higher modes cannot be "
-                           "rendered and would alias");
-        }
+        read_band(rendering, protocol);
         settings.dt_s = 1.0 / protocol.rate_hz;
         settings.penalty_stiffness_n_per_m = rendering.number(
             {"penalty_stiffness_n_per_m", "contact spring: force per penetration depth"},

@@ -88,7 +88,7 @@ class InStep {
 double largest_step(const std::vector<float>& samples, std::size_t from) {
   double largest = 0.0;
   for (std::size_t i = std::max<std::size_t>(from, 1); i < samples.size(); ++i) {
-    largest = std::max(largest, std::abs(double{samples[i]} - double{samples[i - 1]}));
+    largest = std::max(largest, std::abs(static_cast<double>(samples[i] - samples[i - 1])));
   }
   return largest;
 }
@@ -142,7 +142,7 @@ TEST_CASE("a waveform that is cut off by another one, or by nothing, makes no st
           "[device][actuator]") {
   InStep both;
   both.let_pass(40, true);
-  const auto largest = double{std::ranges::max(both.samples_)};
+  const auto largest = static_cast<double>(std::ranges::max(both.samples_));
   const double natural = largest_step(both.samples_, 20 * period_frames);
   const std::size_t from = both.samples_.size();
   SECTION("another alternative") {

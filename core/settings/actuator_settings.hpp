@@ -12,7 +12,7 @@ namespace tapstudy::core {
 struct ActuatorResponse {
   DeviceResponse magnitude;       // at least one point
   std::vector<double> phase_rad;  // of each of its points; linear over the logarithm of frequency
-  // An actuator that does as it is told.
+  // Of an ideal actuator, whose force is the command.
   static ActuatorResponse flat() { return {{{{1.0, 1.0}}, 1.0}, {0.0}}; }
 };
 

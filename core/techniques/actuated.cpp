@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,22 +9,10 @@
 #include "core/techniques/compensated.hpp"
 namespace tapstudy::core {
 std::complex<double> inverse_at(double frequency_hz, const ActuatorResponse& response) {
-  const double gain =
-      std::min(response.magnitude.max_boost, 1.0 / gain_at(frequency_hz, response.magnitude));
-  const std::vector<DeviceResponse::Point>& points = response.magnitude.points;
-  const auto above =
-      std::ranges::lower_bound(points, frequency_hz, {}, &DeviceResponse::Point::frequency_hz);
-  if (above == points.begin()) {
-    return std::polar(gain, -response.phase_rad.front());
-  }
-  if (above == points.end()) {
-    return std::polar(gain, -response.phase_rad.back());
-  }
-  const auto next = static_cast<std::size_t>(std::distance(points.begin(), above));
-  const double from_hz = points[next - 1].frequency_hz;
-  const double share = std::log(frequency_hz / from_hz) / std::log(above->frequency_hz / from_hz);
-  return std::polar(gain,
-                    -std::lerp(response.phase_rad[next - 1], response.phase_rad[next], share));
+  const PlaceInResponse place = place_in(response.magnitude, frequency_hz);
+  const double lead_rad =
+      -std::lerp(response.phase_rad[place.from], response.phase_rad[place.to], place.share);
+  return std::polar(boost_at(frequency_hz, response.magnitude), lead_rad);
 }
 
 ModalModel share_of(const ModalModel& model, const Crossover& crossover, RenderedBy by) {

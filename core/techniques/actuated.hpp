@@ -1,6 +1,5 @@
 #pragma once
 #include <complex>
-#include <memory>
 
 #include "core/model/modal_model.hpp"
 #include "core/settings/actuator_settings.hpp"
@@ -8,8 +7,8 @@
 #include "core/tick/actuator_voice.hpp"
 #include "core/tick/vibrating_plate.hpp"
 namespace tapstudy::core {
-// By what a vibration of this frequency is multiplied so that the actuator makes it come out as it
-// should; no larger than the response's max_boost.
+// The factor on a command of this frequency with which the actuator exerts the force that is asked
+// for: the inverse of its response, at most max_boost in magnitude.
 std::complex<double> inverse_at(double frequency_hz, const ActuatorResponse& response);
 
 // The share of a model's vibration that one of the two renders. The force of a mode is quadratic in
@@ -19,8 +18,8 @@ enum class RenderedBy { device, actuator };
 ModalModel share_of(const ModalModel& model, const Crossover& crossover, RenderedBy by);
 
 // What the actuator renders of a stimulus: its modes and its sinusoid. A recording stays with the
-// device as a whole. settings.crossover must be set. actuated: the actuator's
-// share of the plate's model, null if the technique needs none; must outlive the voice.
+// device as a whole. settings.crossover must be set. actuated: the actuator's share of the plate's
+// model, null if the technique needs none; must outlive the voice.
 ActuatorVoice make_voice(const Technique& technique, const RenderSettings& settings,
                          const VibratingPlate* actuated, const ActuatorResponse& response,
                          double sample_s);

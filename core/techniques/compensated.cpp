@@ -61,8 +61,7 @@ std::vector<double> inverse_filter(const DeviceResponse& response, double rate_h
   for (std::size_t i = 0; i < length; ++i) {
     const double frequency_hz =
         rate_hz * static_cast<double>(std::min(i, length - i)) / static_cast<double>(length);
-    const double boost = std::min(response.max_boost, 1.0 / gain_at(frequency_hz, response));
-    log_magnitude[i] = std::log(boost);
+    log_magnitude[i] = std::log(boost_at(frequency_hz, response));
   }
   std::vector<double> filter = minimum_phase(log_magnitude);
   filter.resize(length / 2);
@@ -71,20 +70,29 @@ std::vector<double> inverse_filter(const DeviceResponse& response, double rate_h
 }
 }  // namespace
 
-double gain_at(double frequency_hz, const DeviceResponse& response) {
+PlaceInResponse place_in(const DeviceResponse& response, double frequency_hz) {
   const std::vector<DeviceResponse::Point>& points = response.points;
   const auto above =
       std::ranges::lower_bound(points, frequency_hz, {}, &DeviceResponse::Point::frequency_hz);
+  const auto to = static_cast<std::size_t>(std::distance(points.begin(), above));
   if (above == points.begin()) {
-    return points.front().gain;
+    return {0, 0, 0.0};
   }
   if (above == points.end()) {
-    return points.back().gain;
+    return {to - 1, to - 1, 0.0};
   }
-  const DeviceResponse::Point& below = *std::prev(above);
-  const double share = std::log(frequency_hz / below.frequency_hz) /
-                       std::log(above->frequency_hz / below.frequency_hz);
-  return below.gain * std::pow(above->gain / below.gain, share);
+  const double from_hz = points[to - 1].frequency_hz;
+  return {to - 1, to, std::log(frequency_hz / from_hz) / std::log(above->frequency_hz / from_hz)};
+}
+
+double gain_at(double frequency_hz, const DeviceResponse& response) {
+  const PlaceInResponse place = place_in(response, frequency_hz);
+  const double from = response.points[place.from].gain;
+  return from * std::pow(response.points[place.to].gain / from, place.share);
+}
+
+double boost_at(double frequency_hz, const DeviceResponse& response) {
+  return std::min(response.max_boost, 1.0 / gain_at(frequency_hz, response));
 }
 
 std::vector<double> compensated(const std::vector<double>& samples, const DeviceResponse& response,

@@ -36,7 +36,7 @@ ActuatorPlayer::~ActuatorPlayer() {
 void ActuatorPlayer::begin(std::span<core::ActuatorVoice> voices) {
   const std::lock_guard lock{mutex_};
   source_.use(voices);
-  actuated_ = {0, 0, actuated_.rate_error, actuated_.jitter_s, actuated_.loss};
+  actuated_.underruns = 0;
 }
 
 Actuated ActuatorPlayer::end() {
@@ -76,15 +76,9 @@ void ActuatorPlayer::play(std::int64_t now) {
 }
 
 void ActuatorPlayer::note(PcmOutcome outcome) {
-  lost_in_a_row_ = outcome == PcmOutcome::lost ? lost_in_a_row_ + 1 : 0;
-  const bool takes_nothing = lost_in_a_row_ >= max_lost_in_a_row;
   const std::lock_guard lock{mutex_};
-  actuated_.underruns += outcome == PcmOutcome::underrun || outcome == PcmOutcome::lost ? 1 : 0;
+  actuated_.note(outcome, *sink_);
   actuated_.rate_error = clock_.rate_error();
   actuated_.jitter_s = clock_.jitter_s();
-  if (outcome == PcmOutcome::gone || takes_nothing) {
-    actuated_.loss = AudioLoss{takes_nothing ? "the card takes no samples" : sink_->failure(),
-                               std::chrono::steady_clock::now()};
-  }
 }
 }  // namespace tapstudy::device

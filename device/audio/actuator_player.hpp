@@ -9,17 +9,14 @@
 
 #include "core/settings/device_settings.hpp"
 #include "device/audio/actuator_source.hpp"
-#include "device/audio/audio_player.hpp"
 #include "device/audio/pcm.hpp"
 #include "device/audio/sample_clock.hpp"
 namespace tapstudy::device {
 // What became of the actuator's samples since the latest begin(); the clock's, of the session.
-struct Actuated {
-  std::int64_t underruns{};  // gaps, and periods that the card had no room for in time
-  std::int64_t limited{};    // samples that the limits changed
-  double rate_error{};       // of the card, against the loop's clock
-  double jitter_s{};         // of the measured times of its periods
-  std::optional<AudioLoss> loss;
+struct Actuated : PlayedPeriods {
+  std::int64_t limited{};  // samples that the limits changed
+  double rate_error{};     // of the card, against the loop's clock
+  double jitter_s{};       // of the measured times of its periods
 };
 
 // Plays a trial's actuator voices through a card on a thread of its own, silence between trials, so
@@ -60,7 +57,6 @@ class ActuatorPlayer {
   double delay_s_;
   SampleClock clock_;  // the thread's, like the period
   std::vector<float> period_;
-  int lost_in_a_row_{0};
   std::mutex mutex_;  // of what follows; held for as long as a period takes to compute
   ActuatorSource source_;
   Actuated actuated_;

@@ -18,7 +18,6 @@ void Ramp::apply(std::span<float> samples, Heard wanted) noexcept {
 }
 
 namespace {
-
 // Cuts to full scale and tells how often; what is no number is silence.
 std::int64_t cut_to_full_scale(std::span<float> samples) noexcept {
   std::int64_t cut = 0;
@@ -53,7 +52,8 @@ AudioPlayer::~AudioPlayer() {
 
 void AudioPlayer::fade_in() {
   std::unique_lock lock{mutex_};
-  played_ = {0, 0, played_.loss};
+  played_.underruns = 0;
+  played_.cut = 0;
   wanted_ = Heard::yes;
   changed_.notify_all();
   changed_.wait_for(lock, ramp_time_, [this] { return played_.loss.has_value(); });
@@ -117,17 +117,12 @@ void AudioPlayer::play() {
 }
 
 bool AudioPlayer::note(PcmOutcome outcome, std::int64_t cut) {
-  lost_in_a_row_ = outcome == PcmOutcome::lost ? lost_in_a_row_ + 1 : 0;
-  const bool takes_nothing = lost_in_a_row_ >= max_lost_in_a_row;
-  const bool is_gone = outcome == PcmOutcome::gone || takes_nothing;
+  bool is_gone = false;
   {
     const std::lock_guard lock{mutex_};
     played_.cut += cut;
-    played_.underruns += outcome == PcmOutcome::underrun || outcome == PcmOutcome::lost ? 1 : 0;
-    if (is_gone) {
-      played_.loss = AudioLoss{takes_nothing ? "the card takes no samples" : sink_->failure(),
-                               std::chrono::steady_clock::now()};
-    }
+    played_.note(outcome, *sink_);
+    is_gone = played_.loss.has_value();
   }
   if (is_gone) {
     changed_.notify_all();

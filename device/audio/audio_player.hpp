@@ -30,17 +30,9 @@ class Ramp {
   long way_frames_{0};  // 0: silent, frames_: full
 };
 
-// A card that plays no more.
-struct AudioLoss {
-  std::string why;
-  std::chrono::steady_clock::time_point at;
-};
-
 // What became of the samples since the latest fade_in().
-struct Played {
-  std::int64_t underruns{};  // gaps, and periods that the card had no room for in time
-  std::int64_t cut{};        // samples beyond full scale
-  std::optional<AudioLoss> loss;
+struct Played : PlayedPeriods {
+  std::int64_t cut{};  // samples beyond full scale
 };
 
 // Plays a source through a sink on a thread of its own, faded in and out. Neither call waits for
@@ -78,7 +70,6 @@ class AudioPlayer {
   core::RealtimeRequest realtime_;
   Ramp ramp_;  // the thread's, like the period
   std::vector<float> period_;
-  int lost_in_a_row_{0};
   mutable std::mutex mutex_;  // of what follows
   std::condition_variable changed_;
   Heard wanted_{Heard::no};

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,9 +12,6 @@ namespace tapstudy::device {
 //   lost      the card had no room for it in time
 //   gone      the card plays no more; failure() tells why
 enum class PcmOutcome : std::uint8_t { played, underrun, lost, gone };
-
-// So many periods for which there was no room, each for 100 ms: the card takes nothing any more.
-inline constexpr int max_lost_in_a_row = 10;
 
 // Plays samples in periods. What keeps a card busy, and what it does with one channel of samples,
 // is its own affair.
@@ -31,6 +29,31 @@ class PcmSink {
   // How many frames are heard before the next one that is written; nullopt: the card does not tell.
   virtual std::optional<long> delay_frames() noexcept { return std::nullopt; }
   virtual std::string failure() const = 0;
+};
+
+// A card that plays no more.
+struct AudioLoss {
+  std::string why;
+  std::chrono::steady_clock::time_point at;
+};
+
+// What became of a card's periods.
+struct PlayedPeriods {
+  std::int64_t underruns{};  // gaps, and periods that the card had no room for in time
+  std::optional<AudioLoss> loss{};
+  int lost_in_a_row{};
+
+  // A card that has had no room for ten periods, 100 ms each, is lost, too.
+  void note(PcmOutcome outcome, const PcmSink& sink) {
+    constexpr int max_lost_in_a_row = 10;
+    underruns += outcome == PcmOutcome::underrun || outcome == PcmOutcome::lost ? 1 : 0;
+    lost_in_a_row = outcome == PcmOutcome::lost ? lost_in_a_row + 1 : 0;
+    const bool takes_nothing = lost_in_a_row >= max_lost_in_a_row;
+    if (outcome == PcmOutcome::gone || takes_nothing) {
+      loss = AudioLoss{takes_nothing ? "the card takes no samples" : sink.failure(),
+                       std::chrono::steady_clock::now()};
+    }
+  }
 };
 
 // What is played into the ears.

@@ -413,8 +413,8 @@ LiveOutcome run_live_session(const LiveSession& live) {
   const core::ActuatorOutput* const actuator = actuator_of(live.protocol, live.rig);
   if (live.protocol.rendering.crossover && actuator == nullptr) {
     warn(
-        "the rig has no section 'actuator': nobody renders what rendering.crossover_hz leaves to "
-        "it");
+        "the rig has no section 'actuator': what rendering.crossover_hz leaves to one is not "
+        "rendered");
   }
   const auto actuated =
       actuator == nullptr ? nullptr : actuator_player(*actuator, live.protocol, live.rig);

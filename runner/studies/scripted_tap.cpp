@@ -135,7 +135,7 @@ void check(const ScriptedTap& tap) {
   }
 }
 
-// One that does as it is told.
+// Its force is the command.
 core::ActuatorOutput ideal_actuator() {
   core::ActuatorOutput actuator;
   actuator.rate_hz = tap_actuator_rate_hz;

@@ -247,28 +247,30 @@ void ModelLibrary::build_all(const protocols::Protocol& protocol) {
   }
 }
 
-ModelLibrary::Divided ModelLibrary::divided(const protocols::PresentedStimulus& stimulus,
-                                            const Plate& whole) {
-  const auto& crossover = stimulus.rendering.crossover;
-  if (!whole || !crossover) {
-    return {whole, nullptr};
+ModelLibrary::Plate ModelLibrary::rendered_by(core::RenderedBy by,
+                                              const protocols::Protocol& protocol,
+                                              const protocols::PresentedStimulus& stimulus) {
+  if (!stimulus.technique->needs_model()) {
+    return nullptr;
   }
-  const auto share = [&](core::RenderedBy by) {
+  const Plate whole = plate_of(protocol, stimulus);
+  const auto& crossover = stimulus.rendering.crossover;
+  if (!crossover) {
+    return by == core::RenderedBy::device ? whole : nullptr;
+  }
+  const auto share = [&] {
     return std::make_shared<const core::VibratingPlate>(
         vibrating_plate(stimulus.plate->shape, core::share_of(whole->model, *crossover, by)));
   };
-  const auto divide = [&] {
-    return Divided{share(core::RenderedBy::device), share(core::RenderedBy::actuator)};
-  };
   if (!stimulus.changed.empty()) {
-    return divide();
+    return share();
   }
   const std::lock_guard lock{mutex_};
-  const auto [kept, is_new] = divided_.try_emplace(whole);
-  if (is_new) {
-    kept->second = divide();
+  Plate& kept = shares_[{whole, by}];
+  if (!kept) {
+    kept = share();
   }
-  return kept->second;
+  return kept;
 }
 
 TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
@@ -276,16 +278,15 @@ TrialStimuli build_trial_stimuli(const protocols::Protocol& protocol,
                                  ModelLibrary& models, const core::ActuatorOutput* actuator) {
   TrialStimuli built;
   for (const protocols::PresentedStimulus& stimulus : stimuli) {
-    const ModelLibrary::Divided plate = models.divided(
-        stimulus,
-        stimulus.technique->needs_model() ? models.plate_of(protocol, stimulus) : nullptr);
-    built.plates.insert(built.plates.end(), {plate.device, plate.actuator});
+    using core::RenderedBy;
+    built.plates.push_back(models.rendered_by(RenderedBy::device, protocol, stimulus));
     built.alternatives.push_back(core::make_renderer(*stimulus.technique, stimulus.rendering,
                                                      touched_shape(stimulus.plate->shape),
-                                                     plate.device.get()));
+                                                     built.plates.back().get()));
     if (actuator != nullptr) {
+      built.plates.push_back(models.rendered_by(RenderedBy::actuator, protocol, stimulus));
       built.voices.push_back(core::make_voice(*stimulus.technique, stimulus.rendering,
-                                              plate.actuator.get(), actuator->response,
+                                              built.plates.back().get(), actuator->response,
                                               1.0 / actuator->rate_hz));
     }
   }

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
@@ -13,6 +14,7 @@
 #include "core/model/model_cache.hpp"
 #include "core/model/plate_model.hpp"
 #include "core/settings/actuator_settings.hpp"
+#include "core/techniques/actuated.hpp"
 #include "core/tick/actuator_voice.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "core/tick/vibrating_plate.hpp"
@@ -89,13 +91,10 @@ class ModelLibrary {
   // What `mesh: auto` asks for in this study: its bodies are solved to the usual accuracy for that.
   AutomaticMesh automatic_mesh(const protocols::Protocol& protocol);
 
-  // What device and actuator render of a plate. Without a crossover all is the device's, and the
-  // other is null.
-  struct Divided {
-    Plate device;
-    Plate actuator;
-  };
-  Divided divided(const protocols::PresentedStimulus& stimulus, const Plate& whole);
+  // What one of the two renders of a stimulus; null where its technique needs no model. Without a
+  // crossover all is the device's.
+  Plate rendered_by(core::RenderedBy by, const protocols::Protocol& protocol,
+                    const protocols::PresentedStimulus& stimulus);
 
   int bodies_solved() const { return solved_; }  // not found in memory or on disk
   int bodies_used() const { return static_cast<int>(bodies_.size()); }
@@ -112,7 +111,7 @@ class ModelLibrary {
   core::ErrorEstimation estimation_;
   std::map<std::string, Body> bodies_;  // by content key
   std::map<std::string, Plate> plates_;
-  std::map<Plate, Divided> divided_;  // of those
+  std::map<std::pair<Plate, core::RenderedBy>, Plate> shares_;  // of those
   int solved_{0};
 };
 

@@ -18,8 +18,8 @@ std::array<double, 3> plain(const Vec3& v) noexcept {
 // turned and scaled by `by`. With w_d = w sqrt(1 - zeta²), y = (v + zeta w q) / w_d and the vector
 // (q, y) = A e^(-zeta w t) (sin, cos)(w_d t):
 //     F = c q + d y,   c = k - b zeta w,   d = b w_d,
-// and turned by the angle p, sin and cos of w_d t + p take the place of those of w_d t. What is
-// not under-critically damped does not turn.
+// and turned by the angle p, sin and cos of w_d t + p take the place of those of w_d t. A
+// mode that is critically damped or more does not turn.
 std::pair<double, double> parts_of_force(double omega_rad_s, double damping_ratio,
                                          const Finger& finger, std::complex<double> by) {
   const double k = finger.stiffness_n_per_m;
@@ -78,6 +78,11 @@ void ActuatorVoice::advance() noexcept {
   before_.swap(displacement_);
   displacement_ = qq_ * before_ + qv_ * velocity_;
   velocity_ = vq_ * before_ + vv_ * velocity_;
+  if (++since_flush_ == ticks_to_flush) {
+    flush(displacement_);
+    flush(velocity_);
+    since_flush_ = 0;
+  }
   if (sinusoid_) {
     sinusoid_->advance(1);
   }

@@ -70,7 +70,8 @@ class ActuatorVoice {
   double share_{0.0};
   double share_step_{0.0};
   double share_aim_{0.0};
-  int left_{0};  // samples until touched_ and share_ are where they aim
+  int since_flush_{0};  // samples
+  int left_{0};         // samples until touched_ and share_ are where they aim
   bool is_touching_{false};
 };
 

@@ -6,19 +6,12 @@
 #include <numbers>
 #include <tuple>
 namespace tapstudy::core {
-namespace {
-// A decaying state is flushed to zero before it becomes denormal, where arithmetic is slow. The
-// smallest relevant motion is some eighty orders of magnitude larger. Now and then is soon enough:
-// a mode that falls from there to denormal numbers in so few ticks is gone in the next.
-constexpr double silence = 1e-100;
-constexpr int ticks_to_flush = 64;
-
 void flush(Eigen::ArrayXd& values) noexcept {
+  constexpr double silence = 1e-100;
   for (double& value : values) {
     value = std::abs(value) < silence ? 0.0 : value;
   }
 }
-}  // namespace
 
 void modes_along(const ModalModel& model, const SurfacePoint& point, const Vec3& normal,
                  Eigen::ArrayXd& along) noexcept {

@@ -11,6 +11,13 @@ namespace tapstudy::core {
 void modes_along(const ModalModel& model, const SurfacePoint& point, const Vec3& normal,
                  Eigen::ArrayXd& along) noexcept;
 
+// A decaying state is set to zero before it becomes denormal, where arithmetic is slow. The
+// smallest relevant motion is some eighty orders of magnitude larger. Every `ticks_to_flush` is
+// soon enough: a mode that falls from there to denormal numbers in so few ticks is gone in the
+// next.
+inline constexpr int ticks_to_flush = 64;
+void flush(Eigen::ArrayXd& values) noexcept;
+
 // The dynamic state of a plate: one displacement and one velocity per mode (paper eq. 11). The
 // model must outlive it. Only the constructor allocates.
 class ModalState {

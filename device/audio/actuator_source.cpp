@@ -6,12 +6,21 @@ namespace tapstudy::device {
 namespace {
 constexpr std::size_t ring_capacity = 1024;
 constexpr double bridge_s = 1e-3;
+// Ticks are taken once a period of the card, of a millisecond or so.
+constexpr double least_without_tick_s = 0.002;
 constexpr double most_periods_without_tick = 2.0;
+
+// As many ticks as come within the delay, and as many again.
+std::size_t waiting_capacity(const ActuatorSource::Settings& settings) {
+  constexpr std::size_t least = 64;
+  return std::max(least, 2 * static_cast<std::size_t>(settings.delay_s / settings.tick_s));
+}
 }  // namespace
 
 ActuatorSource::ActuatorSource(const Settings& settings)
     : settings_{settings},
       ticks_{ring_capacity},
+      waiting_(waiting_capacity(settings)),
       samples_a_tick_{
           static_cast<int>(std::max(1L, std::lround(settings.tick_s * settings.rate_hz)))},
       limiter_{{std::min(settings.limits.peak_n, settings.full_scale_n), settings.limits.rms_n},
@@ -30,7 +39,8 @@ void ActuatorSource::fill(std::span<float> samples, double heard_at_ns, double f
                           std::int64_t now_ns) noexcept {
   take_ticks();
   const double without_tick_s = 1e-9 * static_cast<double>(now_ns - newest_ns_);
-  if (without_tick_s > most_periods_without_tick * settings_.tick_s) {
+  if (without_tick_s >
+      std::max(least_without_tick_s, most_periods_without_tick * settings_.tick_s)) {
     if (heard_ != nullptr && !has_faded_) {
       heard_->fade(static_cast<int>(samples.size()));
       has_faded_ = true;
@@ -47,7 +57,7 @@ void ActuatorSource::fill(std::span<float> samples, double heard_at_ns, double f
   }
 }
 
-// What does not fit has waited for longer than any card buffers: the oldest is dropped.
+// What does not fit has waited for longer than the delay: the oldest is dropped.
 void ActuatorSource::take_ticks() noexcept {
   core::ActuatorTick tick{};
   while (ticks_.try_pop(tick)) {

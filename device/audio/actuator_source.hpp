@@ -1,9 +1,8 @@
 #pragma once
-#include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/tick/actuator_voice.hpp"
 #include "core/tick/spsc_ring.hpp"
@@ -11,9 +10,9 @@ namespace tapstudy::device {
 // Renders the actuator's samples from what the haptic loop tells of its ticks, each a fixed delay
 // after its time. Everything but `ticks` is the audio thread's.
 //
-// The ticks cease when the loop has stalled, faulted or ended: two of its periods without one end
-// what is heard within a period of samples. Where one waveform ends and another begins, or none,
-// the difference fades over a millisecond.
+// The ticks cease when the loop has stalled, faulted or ended: two of its periods, and 2 ms,
+// without one end what is heard within a period of samples. Where one waveform ends and another
+// begins, or none, the difference fades over a millisecond.
 class ActuatorSource {
  public:
   struct Settings {
@@ -44,7 +43,7 @@ class ActuatorSource {
 
   Settings settings_;
   core::SpscRing<core::ActuatorTick> ticks_;
-  std::array<core::ActuatorTick, 64> waiting_{};  // a ring: taken, and not yet due
+  std::vector<core::ActuatorTick> waiting_;  // a ring: taken, and not yet due
   std::size_t first_{0};
   std::size_t count_{0};
   std::int64_t newest_ns_{0};

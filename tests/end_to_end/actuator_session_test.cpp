@@ -1,6 +1,7 @@
 // Sessions with an actuator beside the device, on a card that is a file.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -77,7 +78,7 @@ TEST_CASE("each impact of a session is heard from the actuator, on its channel a
   CHECK(testing::tapstudy({"verify", directory / "the_study"}).exit_code == 0);
 }
 
-TEST_CASE("a study that leaves vibration to an actuator is refused where none is, by its name",
+TEST_CASE("a study that leaves vibration to an actuator is refused where none can render it",
           "[end_to_end][audio][actuator]") {
   const TempDirectory directory;
   const std::string study = divided_study(directory);
@@ -87,8 +88,19 @@ TEST_CASE("a study that leaves vibration to an actuator is refused where none is
                         answers);
   CHECK(missing.exit_code == 3);
   CHECK_THAT(missing.standard_error, Contains("audio: card 'hw:31' cannot be opened"));
+  CHECK_FALSE(std::filesystem::exists(directory / "the_study"));
+  const auto none =
+      testing::tapstudy({"check", study, "--rig", testing::shipped("rigs/remote.yaml")});
+  CHECK(none.exit_code == 2);
+  CHECK_THAT(none.standard_error, Contains("the rig has no section 'actuator'"));
   const auto slow = testing::tapstudy(
       {"check", study, "--rig", rig(directory, "{rate_hz: 8000, full_scale_n: 1}")});
   CHECK(slow.exit_code == 0);
   CHECK_THAT(slow.standard_output, Contains("by the actuator"));
+  testing::write(study, testing::replaced(testing::contents(study), "band_limit_hz: 600",
+                                          "band_limit_hz: 3700"));
+  const auto beyond = testing::tapstudy(
+      {"check", study, "--rig", rig(directory, "{rate_hz: 8000, full_scale_n: 1}")});
+  CHECK(beyond.exit_code == 2);
+  CHECK_THAT(beyond.standard_error, Contains("actuator.rate_hz 8000 plays (at most 3600 Hz)"));
 }

@@ -244,6 +244,16 @@ TEST_CASE(
   CHECK(still.force_n() == Approx(forces_n.back()));
 }
 
+TEST_CASE("a mode that has died away is at rest, not at denormal numbers", "[core][actuator]") {
+  const VibratingPlate plate = testing::uniform_plate(Eigen::ArrayXd::Constant(1, 1000.0), 0.08,
+                                                      Eigen::ArrayXd::Constant(1, 1.0));
+  ActuatorVoice voice = make_voice(*find_technique("fem"), divided_at(1e-3), &plate,
+                                   ActuatorResponse::flat(), 1.0 / audio_rate_hz);
+  const auto forces_n = forces_of(voice, 48'000);  // e^-502 of what it was
+  CHECK(forces_n[100] != 0.0);
+  CHECK(forces_n.back() == 0.0);
+}
+
 TEST_CASE("a contact that ends fades within a tick, and force is as much as passed the limits",
           "[core][actuator]") {
   const VibratingPlate plate = testing::uniform_plate(Eigen::ArrayXd::Constant(1, 400.0), 0.0,

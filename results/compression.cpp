@@ -2,6 +2,7 @@
 
 #include <zstd.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -18,18 +19,23 @@ std::size_t checked(std::size_t result) {
 }
 }  // namespace
 
+// A context and its tables are a megabyte, and as much is the room for what might not shrink: each
+// thread keeps its own, since the system takes longer to give and clear new memory for every chunk
+// of a trace than the chunk takes to be compressed.
 std::vector<std::byte> compressed(std::span<const std::byte> plain) {
-  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(),
-                                                                     ZSTD_freeCCtx};
+  thread_local const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(),
+                                                                                  ZSTD_freeCCtx};
+  thread_local std::vector<std::byte> room;
   if (context == nullptr) {
     throw StoreError{"compression failed: out of memory"};
   }
+  checked(ZSTD_CCtx_reset(context.get(), ZSTD_reset_session_and_parameters));
   checked(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, compression_level));
   checked(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1));
-  std::vector<std::byte> bytes(ZSTD_compressBound(plain.size()));
-  bytes.resize(checked(
-      ZSTD_compress2(context.get(), bytes.data(), bytes.size(), plain.data(), plain.size())));
-  return bytes;
+  room.resize(std::max(room.size(), ZSTD_compressBound(plain.size())));
+  const std::size_t size =
+      checked(ZSTD_compress2(context.get(), room.data(), room.size(), plain.data(), plain.size()));
+  return {room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
 std::vector<std::byte> decompressed(std::span<const std::byte> bytes, std::size_t size,

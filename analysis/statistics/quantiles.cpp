@@ -35,6 +35,9 @@ MeanAndSpread mean_and_spread(std::span<const double> values) {
   for (const double value : values) {
     result.mean += value / n;
   }
+  // rounding would leave equal values a mean that is none of them, and a deviation
+  const auto [least, most] = std::ranges::minmax(values);
+  result.mean = std::clamp(result.mean, least, most);
   double squares = 0.0;
   for (const double value : values) {
     squares += (value - result.mean) * (value - result.mean);

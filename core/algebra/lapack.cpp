@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <lapacke.h>
 
-#include <Eigen/Cholesky>
 #include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/algebra/blas.hpp"
+#include "core/algebra/dense_solvers.hpp"
 #include "core/error.hpp"
 namespace tapstudy::core {
 namespace {
@@ -160,9 +160,8 @@ std::optional<Eigen::VectorXd> by_normal_equations(const Eigen::MatrixXd& A,
   constexpr double dependent = 1e-8;  // what is left of a column of unit length, squared
   const Eigen::VectorXd per_size = gram_of_a.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = per_size.asDiagonal() * gram_of_a * per_size.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> factors{scaled};
-  if (!scaled.allFinite() || factors.info() != Eigen::Success ||
-      !(factors.vectorD().minCoeff() > dependent)) {
+  const SymmetricFactors factors{scaled};
+  if (!scaled.allFinite() || !factors.succeeded() || !(factors.pivots().minCoeff() > dependent)) {
     return std::nullopt;
   }
   const auto solved = [&](const Eigen::VectorXd& of) -> Eigen::VectorXd {

@@ -110,6 +110,7 @@ bool Journal::read_appended(int descriptor) {
   const bool is_the_same = status.st_size >= read_bytes_;
   if (!is_the_same) {
     known_.clear();
+    session_ids_.clear();
     chain_.clear();
     read_bytes_ = 0;
     flushed_bytes_ = 0;
@@ -161,6 +162,9 @@ bool Journal::complete(const std::function<StudyRow()>& study,
     throw error;
   }
   known_.insert(bodies.begin(), bodies.end());
+  for (const SessionRow& session : sessions) {
+    session_ids_.insert(session.id);
+  }
   read_bytes_ += static_cast<std::int64_t>(text.size());
   // also lines of a program that was killed, or whose disk failed, before it had flushed them
   if (flush_ == Flush::each_time && flushed_bytes_ < read_bytes_) {

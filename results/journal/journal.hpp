@@ -46,6 +46,9 @@ class Journal {
   // begins with what is left.
   bool complete(const std::function<StudyRow()>& study, const std::vector<SessionRow>& sessions,
                 const JournalEntries& entries);
+  // Whether the session's line has been completed, and none has gone since: a row that holds the
+  // whole planned order need not be read for each answer.
+  bool holds_session(std::int64_t session_id) const { return session_ids_.contains(session_id); }
 
  private:
   bool read_appended(int descriptor);  // false: it is another file now
@@ -55,7 +58,8 @@ class Journal {
   std::string file_;
   Flush flush_{Flush::each_time};
   std::set<std::string> known_;  // lines without their chain
-  std::string chain_;            // of the last line known
+  std::set<std::int64_t> session_ids_;
+  std::string chain_;  // of the last line known
   std::int64_t read_bytes_{0};
   std::int64_t flushed_bytes_{0};  // of these, known to be on the disk
   bool flush_failed_{false};

@@ -150,7 +150,7 @@ class Store {
   void commit_batch();
   void add_to_journal(const TrialRecord& record);
   void journal_failed_calls();
-  void journal(const std::vector<SessionRow>& sessions_of_entries, const JournalEntries& entries);
+  void journal(const std::set<std::int64_t>& session_ids_of_entries, const JournalEntries& entries);
   void journal_sessions();
   void insert_action(const OperatorActionRow& action);
   int insert_correction(const CorrectionRow& correction);  // which of the trial's, from 1
@@ -168,6 +168,7 @@ class Store {
   void insert_form_answer(const FormAnswerRow& answer);
   std::vector<OperatorActionRow> actions_for_journal();
   SessionRow session_of(std::int64_t session_id);
+  std::set<std::int64_t> session_ids();
   StudyRow study_without_surfaces();
   std::vector<SurfaceRow> surfaces();
   void add_surfaces(const StudyRow& study);

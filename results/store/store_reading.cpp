@@ -74,6 +74,15 @@ std::vector<SessionRow> Store::sessions() {
   return sessions;
 }
 
+std::set<std::int64_t> Store::session_ids() {
+  std::set<std::int64_t> ids;
+  Statement row{database_, "SELECT session_id FROM session"};
+  while (row.step()) {
+    ids.insert(row.integer(0));
+  }
+  return ids;
+}
+
 SessionRow Store::session_of(std::int64_t session_id) {
   Statement row{database_, fmt::format("SELECT {} FROM session JOIN participant "
                                        "USING (participant_id) WHERE session_id = ?",

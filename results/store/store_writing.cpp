@@ -81,7 +81,7 @@ std::map<int, std::string> Store::orders_used_beside(const std::string& particip
 // Once they are committed: what is rolled back must not be in the journal.
 void Store::journal_sessions() {
   if (journal_ && !database_.is_in_transaction()) {
-    journal(sessions(), {});
+    journal(session_ids(), {});
   }
 }
 
@@ -255,17 +255,13 @@ void Store::commit_batch() {
   for (const JournalledAnswer& answer : batch.answers) {
     ids.insert(answer.trial.session_id);
   }
-  std::vector<SessionRow> sessions;
-  for (const std::int64_t id : ids) {
-    sessions.push_back(session_of(id));
-  }
-  journal(sessions, {.answers = batch.answers});
+  journal(ids, {.answers = batch.answers});
 }
 
 void Store::add_to_journal(const TrialRecord& record) {
   journal_failed_calls();
   if (journal_ && is_answered(record)) {
-    journal({session_of(record.trial.session_id)},
+    journal({record.trial.session_id},
             {.answers = {{record.trial, record.alternatives, *record.response}}});
   }
 }
@@ -443,10 +439,16 @@ std::vector<FormAnswerRow> Store::forms_for_journal() {
 }
 
 // Appends what of it the journal lacks.
-void Store::journal(const std::vector<SessionRow>& sessions_of_entries,
+void Store::journal(const std::set<std::int64_t>& session_ids_of_entries,
                     const JournalEntries& entries) {
   const auto of_study = [this] { return study(); };
-  if (!journal_->complete(of_study, sessions_of_entries, entries)) {
+  std::vector<SessionRow> new_sessions;
+  for (const std::int64_t id : session_ids_of_entries) {
+    if (!journal_->holds_session(id)) {
+      new_sessions.push_back(session_of(id));
+    }
+  }
+  if (!journal_->complete(of_study, new_sessions, entries)) {
     journal_->complete(of_study, sessions(), entries_for_journal());
   }
 }
@@ -469,7 +471,7 @@ void Store::journal_failed_calls() {
   for (FailedCall& one : failed_calls_) {
     if (!one.is_journalled) {
       if (journal_) {
-        journal({session_of(one.session_id)}, one.entries);
+        journal({one.session_id}, one.entries);
       }
       one.is_journalled = true;
     }

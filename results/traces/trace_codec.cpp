@@ -116,12 +116,13 @@ void transpose(const std::byte* from, std::size_t rows, std::size_t columns, std
 }  // namespace
 
 std::vector<std::byte> encode_trace(std::span<const TraceSample> samples) {
-  std::vector<Record> records;
-  records.reserve(samples.size());
+  thread_local std::vector<Record> records;  // kept, as the compression's room is
+  thread_local std::vector<std::byte> rows;
+  records.clear();
   for (const TraceSample& sample : samples) {
     records.push_back(packed(sample));
   }
-  std::vector<std::byte> rows(samples.size() * record_bytes);
+  rows.resize(samples.size() * record_bytes);
   transpose(std::as_bytes(std::span{records}).data(), samples.size(), record_bytes, rows.data());
   return compressed(rows);
 }

@@ -88,7 +88,7 @@ TEST_CASE("doctor tells how long the device takes to reply, and sends it no forc
 }
 
 TEST_CASE("a device that cannot be used is one clear error, and no force is ever sent",
-          "[end_to_end][usb][safety]") {
+          "[end_to_end][usb][safety][waits]") {
   struct Case {
     std::vector<std::string> options;
     const char* said;

@@ -1,12 +1,12 @@
 #include "analysis/modal/decay/decay_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "core/algebra/blas.hpp"
+#include "core/algebra/dense_solvers.hpp"
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -66,15 +66,15 @@ Step step_of(const std::vector<Normal>& normals, double damping) {
   }
   damp(matrix, damping);
   Eigen::VectorXd slope = Eigen::VectorXd::Zero(shared);
-  std::vector<Eigen::LDLT<Eigen::MatrixXd>> own;
+  std::vector<core::SymmetricFactors> own;
   for (const Normal& normal : normals) {
     Eigen::MatrixXd damped = normal.own;
     damp(damped, damping);
     own.emplace_back(damped);
-    matrix -= normal.between * own.back().solve(normal.between.transpose());
+    matrix -= normal.between * own.back().solve_columns(normal.between.transpose());
     slope += normal.shared_slope - normal.between * own.back().solve(normal.own_slope);
   }
-  Step step{Eigen::LDLT<Eigen::MatrixXd>{matrix}.solve(slope), {}};
+  Step step{core::SymmetricFactors{matrix}.solve(slope), {}};
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const Normal& normal = normals[i];
     step.own.emplace_back(own[i]
@@ -151,7 +151,7 @@ Eigen::MatrixXd information_on_shared(const std::vector<WeightedDecay>& decays,
                                       Eigen::Index shared) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2 * shared, 2 * shared);
   for (const Normal& normal : normal_equations(decays, shared)) {
-    matrix += normal.shared - normal.between * Eigen::LDLT<Eigen::MatrixXd>{normal.own}.solve(
+    matrix += normal.shared - normal.between * core::SymmetricFactors{normal.own}.solve_columns(
                                                    normal.between.transpose());
   }
   return matrix;
@@ -204,7 +204,7 @@ FittedMode mode_of(const DecayModel& model, const DecayModel::State& state,
   const double amplitude = std::max(mode.amplitude, 1e-300);
   mode.amplitude_error = error_of({a / amplitude, b / amplitude}, of_share);
   mode.phase_error_rad = error_of({-b / amplitude, a / amplitude}, of_share) / amplitude;
-  mode.significance = parts.dot(of_share.ldlt().solve(parts));
+  mode.significance = parts.dot(core::SymmetricFactors{of_share}.solve(parts));
   return mode;
 }
 
@@ -262,7 +262,8 @@ void set_significance(const DecayModel::State& state, double variance, std::size
   for (std::size_t k = 0; k < shared; ++k) {
     const auto row = 2 * static_cast<Eigen::Index>(k);
     const Eigen::Vector2d parts = state.shares.segment<2>(row).cwiseQuotient(scale.segment<2>(row));
-    fit.modes[k].significance = parts.dot(inverse.block<2, 2>(row, row).ldlt().solve(parts));
+    fit.modes[k].significance =
+        parts.dot(core::SymmetricFactors{inverse.block<2, 2>(row, row)}.solve(parts));
   }
 }
 

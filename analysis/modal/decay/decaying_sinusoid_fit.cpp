@@ -1,6 +1,5 @@
 #include "analysis/modal/decay/decaying_sinusoid_fit.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -9,6 +8,8 @@
 #include <unsupported/Eigen/NonLinearOptimization>
 
 #include "analysis/statistics/distributions.hpp"
+#include "core/algebra/dense_solvers.hpp"
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -56,7 +57,7 @@ class SinusoidModel {
         second.imag() / 2.0, (squares - second.real()) / 2.0, first.imag(),      //
         first.real(), first.imag(), static_cast<double>(samples_.size());
     const Eigen::Vector3d products{product.real(), product.imag(), sum_};
-    const Eigen::Vector3d shares = gram.ldlt().solve(products);
+    const Eigen::Vector3d shares = core::SymmetricFactors{gram}.solve(products);
     return {shares, energy_ - shares.dot(products)};
   }
 
@@ -168,7 +169,7 @@ std::optional<FittedSinusoid> fit_decaying_sinusoid(const FreeDecay& from_impact
   const Eigen::MatrixXd scaled = jacobian * size.cwiseInverse().asDiagonal();
   const double variance =
       residual.squaredNorm() / static_cast<double>(decay.samples.size() - x.size());
-  const Eigen::MatrixXd inverse = (scaled.transpose() * scaled).inverse() * variance;
+  const Eigen::MatrixXd inverse = core::pseudo_inverse(scaled.transpose() * scaled) * variance;
   const Eigen::MatrixXd covariance =
       size.cwiseInverse().asDiagonal() * inverse * size.cwiseInverse().asDiagonal();
   FittedSinusoid fit = sinusoid_of(x, covariance, decay.rate_hz);

@@ -1,6 +1,5 @@
 #include "analysis/modal/decay/resting_pole_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +9,7 @@
 #include "analysis/modal/decay/decay_fit.hpp"
 #include "analysis/modal/decay/decay_model.hpp"
 #include "core/algebra/blas.hpp"
+#include "core/algebra/dense_solvers.hpp"
 #include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
@@ -179,7 +179,7 @@ bool all_decay(const Eigen::VectorXd& parameters) {
 Eigen::VectorXd step_from(const Equations& sum, double damping) {
   Eigen::MatrixXd matrix = sum.matrix;
   matrix.diagonal() *= 1.0 + damping;
-  return Eigen::LDLT<Eigen::MatrixXd>{matrix}.solve(sum.slope);
+  return core::SymmetricFactors{matrix}.solve(sum.slope);
 }
 
 // Steps until one is small beside the standard errors; true if it came to that.

@@ -1,6 +1,5 @@
 #include "analysis/modal/recording/impact_search.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,6 +7,7 @@
 #include <optional>
 
 #include "analysis/statistics/quantiles.hpp"
+#include "core/algebra/dense_solvers.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr double predicted_rate_hz = 4000.0;
@@ -41,7 +41,7 @@ Eigen::VectorXd prediction_of(const Eigen::VectorXd& samples) {
   }
   constexpr double load = 1e-9;  // of a recording without noise
   toeplitz.diagonal().array() += load * covariance[0];
-  return toeplitz.ldlt().solve(covariance.tail(order));
+  return core::SymmetricFactors{toeplitz}.solve(covariance.tail(order));
 }
 }  // namespace
 

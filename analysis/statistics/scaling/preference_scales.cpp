@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/population/means.hpp"
+#include "core/algebra/dense_solvers.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -152,7 +152,7 @@ ScaleMaximum maximise_scale(const ScaleLikelihood& likelihood, Eigen::Index item
   LikelihoodAt here = likelihood(at);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const Eigen::MatrixXd determined = here.information + projection;
-    Eigen::VectorXd step = determined.ldlt().solve(here.score);
+    Eigen::VectorXd step = core::SymmetricFactors{determined}.solve(here.score);
     LikelihoodAt there = likelihood(at + step);
     while (!(there.value >= here.value) && step.cwiseAbs().maxCoeff() > smallest_step) {
       step *= 0.5;
@@ -167,7 +167,7 @@ ScaleMaximum maximise_scale(const ScaleLikelihood& likelihood, Eigen::Index item
   at.head(items).array() -= at.head(items).mean();
   const Eigen::MatrixXd determined = here.information + projection;
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(parameters, parameters);
-  return {at, determined.ldlt().solve(identity) - projection, here.value};
+  return {at, core::SymmetricFactors{determined}.solve_columns(identity) - projection, here.value};
 }
 
 namespace {
@@ -182,9 +182,9 @@ Eigen::MatrixXd covariance_over(const std::vector<LikelihoodAt>& participants,
   const auto n = static_cast<double>(participants.size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(parameters, parameters);
   for (const LikelihoodAt& own : participants) {
-    const Eigen::LDLT<Eigen::MatrixXd> of_others{information - own.information};
+    const core::SymmetricFactors of_others{information - own.information};
     constexpr double smallest = 1e-9;
-    if (!(of_others.vectorD().minCoeff() > smallest * of_others.vectorD().maxCoeff())) {
+    if (!(of_others.pivots().minCoeff() > smallest * of_others.pivots().maxCoeff())) {
       return Eigen::MatrixXd::Constant(parameters, parameters, std::nan(""));
     }
     const Eigen::VectorXd change = of_others.solve(own.score);

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
 
+#include "core/algebra/dense_solvers.hpp"
 #include "core/error.hpp"
 #include "core/model/elements/assembly.hpp"
 #include "core/model/elements/spring_support.hpp"
@@ -156,9 +157,8 @@ class Elongations {
     for (const NodeWeight& one : weights) {
       spread_m2 += one.weight * arm_m(one) * arm_m(one).transpose();
     }
-    const Vec3 tilt_per_m =
-        Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d>{spread_m2}.solve(middle_m(named) -
-                                                                                 mean_m);
+    constexpr double extended = 3.0 * std::numeric_limits<double>::epsilon();
+    const Vec3 tilt_per_m = shortest_solution(spread_m2, middle_m(named) - mean_m, extended);
     for (NodeWeight& one : weights) {
       one.weight *= 1.0 + tilt_per_m.dot(arm_m(one));
     }

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
 
+#include "core/algebra/dense_solvers.hpp"
 #include "core/error.hpp"
 #include "core/geometry/smooth_normals.hpp"
 #include "core/geometry/triangle_tree.hpp"
@@ -151,7 +151,7 @@ Vec3 CurvedTriangles::fitted_normal(int fan) const {
     size_m = std::max(size_m, (point_m(point) - point_m(at)).norm());
   }
   const auto rows = static_cast<Eigen::Index>(near.size());
-  Eigen::Matrix<double, Eigen::Dynamic, 5> terms(rows, 5);
+  Eigen::MatrixXd terms(rows, 5);
   Eigen::VectorXd heights(rows);
   Eigen::Index row = 0;
   for (const int point : near) {
@@ -163,9 +163,7 @@ Vec3 CurvedTriangles::fitted_normal(int fan) const {
     terms.row(row) *= weight;
     heights[row++] = weight * from.dot(mean);
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, Eigen::Dynamic, 5>> fit(rows, 5);
-  fit.setThreshold(told);
-  const Eigen::VectorXd found = fit.compute(terms).solve(heights);
+  const Eigen::VectorXd found = shortest_solution(terms, heights, told);
   const Vec3 normal = (mean - found[0] * along - found[1] * beside).normalized();
   const bool is_told =
       rows >= 5 && normal.allFinite() && angle(normal, mean) < SmoothNormals::sharp_above_rad;

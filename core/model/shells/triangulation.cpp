@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/algebra/dense_solvers.hpp"
 #include "core/error.hpp"
 #include "core/model/mesh/tetgen_mesher.hpp"
 namespace tapstudy::core {
@@ -156,9 +156,7 @@ class Directors {
 
   static Vec3 meeting(const Eigen::MatrixX3d& normals) {
     constexpr double told = 0.1;  // nearly equal normals tell one direction
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixX3d> system(normals.rows(), 3);
-    system.setThreshold(told);
-    return system.compute(normals).solve(Eigen::VectorXd::Ones(normals.rows()));
+    return shortest_solution(normals, Eigen::VectorXd::Ones(normals.rows()), told);
   }
   Key key_of(Eigen::Index triangle, Eigen::Index column) const {
     constexpr int only = 0;

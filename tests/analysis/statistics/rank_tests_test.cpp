@@ -209,6 +209,17 @@ TEST_CASE("marks a hundredth apart are tied as their hundredths are, though not 
   CHECK(marks.p == whole.p);
 }
 
+TEST_CASE("values that are equal are their mean and do not deviate", "[analysis][rank_tests]") {
+  for (const double value : {0.1, 0.3, 0.7, 1.1, 66.7, -1e-5}) {
+    for (std::size_t count = 2; count < 40; ++count) {
+      const auto found = analysis::mean_and_spread(std::vector<double>(count, value));
+      CAPTURE(value, count);
+      CHECK(found.mean == value);
+      CHECK(found.standard_deviation == 0.0);
+    }
+  }
+}
+
 TEST_CASE("ratings that cannot be compared are refused", "[analysis][rank_tests]") {
   CHECK_THROWS_AS(analysis::friedman_test({}, 1), core::InvalidInput);
   CHECK_THROWS_AS(analysis::friedman_test({{1, 2}}, 1), core::InvalidInput);

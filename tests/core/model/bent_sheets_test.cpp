@@ -1,5 +1,4 @@
 // Sheets by the surface in their middle, against theory, CalculiX and tetrahedra.
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 #include "core/model/discrete_body.hpp"
 #include "core/model/joints/joints.hpp"
@@ -183,7 +183,7 @@ double tube_hz(double radius_m, double length_m, double thickness_m, int m, int 
   stiffness(1, 2) = n + k * 0.5 * (3.0 - nu) * l * l * n;
   stiffness(2, 2) = 1.0 + k * (std::pow(l * l + n * n, 2) + 1.0 - 2.0 * n * n);
   stiffness.triangularView<Eigen::StrictlyLower>() = stiffness.transpose();
-  const double w2 = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>{stiffness}.eigenvalues()[0];
+  const double w2 = core::symmetric_eigenpairs(stiffness).values[0];
   return std::sqrt(w2 * sheet_steel.youngs_modulus_pa /
                    (sheet_steel.density_kg_per_m3 * (1.0 - nu * nu))) /
          (2.0 * std::numbers::pi * radius_m);

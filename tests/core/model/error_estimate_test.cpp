@@ -1,13 +1,13 @@
 // The estimate of a model's discretisation error, by elements of the next order.
 #include "core/model/error_estimate.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
+#include "core/algebra/dense_solvers.hpp"
 #include "core/model/elements/enrichment.hpp"
 #include "core/model/elements/tet_element.hpp"
 #include "core/model/joints/joints.hpp"
@@ -119,9 +119,9 @@ TEST_CASE("a cubic displacement stores its exact energies in an element of order
       }
     }
   }
-  const Eigen::Matrix<double, 20, 20> normal = fit.transpose() * fit;
-  const Eigen::Matrix<double, 20, 3> nodal = normal.ldlt().solve(fit.transpose() * values);
-  const Eigen::Matrix<double, 60, 1> x = nodal.reshaped<Eigen::RowMajor>();
+  const Eigen::MatrixXd nodal =
+      core::SymmetricFactors{fit.transpose() * fit}.solve_columns(fit.transpose() * values);
+  const Eigen::VectorXd x = nodal.reshaped<Eigen::RowMajor>();
   CHECK(0.5 * x.dot(element.stiffness * x) == Approx(strain_j).epsilon(1e-8));
   double mass_j = 0.0;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {

@@ -1,10 +1,10 @@
 // Bodies whose frequencies are known from theory, order 2, each at a stated mesh.
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "core/algebra/lapack.hpp"
 #include "core/error.hpp"
 #include "core/model/beam.hpp"
 #include "core/model/cubic_elements.hpp"
@@ -493,12 +493,7 @@ Eigen::ArrayXd free_cube(double lambda, double shear) {
       }
     }
   }
-  return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>{stiffness, mass,
-                                                                   Eigen::EigenvaluesOnly}
-      .eigenvalues()
-      .array()
-      .max(0.0)
-      .sqrt();
+  return core::symmetric_eigenpairs(stiffness, mass).values.cwiseMax(0.0).cwiseSqrt();
 }
 }  // namespace
 

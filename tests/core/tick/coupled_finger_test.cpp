@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
 #include <vector>
 
+#include "core/algebra/lapack.hpp"
 #include "core/random/rng.hpp"
 #include "core/techniques/technique.hpp"
 #include "core/tick/god_object.hpp"
@@ -431,7 +431,7 @@ double slowest_decay_per_s(const Mode& mode, const Finger& finger,
       0.0, 0.0, 0.0, 1.0,                                                                 //
       p * pad / finger.mass_kg, 0.0, -(pad + finger.stiffness_n_per_m) / finger.mass_kg,  //
       -finger.damping_n_s_per_m / finger.mass_kg;
-  return -Eigen::EigenSolver<Eigen::Matrix4d>{rates}.eigenvalues().real().maxCoeff();
+  return -tapstudy::core::eigenvalues(rates).real().maxCoeff();
 }
 }  // namespace
 

@@ -399,6 +399,47 @@ TEST_CASE("a bowl is held, sprung and joined to another as other bodies are",
   CHECK((sprung_hz / held_hz - 1.0).abs().maxCoeff() < 2e-3);
 }
 
+// Springs between what is held anyway join nothing.
+TEST_CASE("the estimated frequencies of two bent sheets are those of each alone, together",
+          "[core][model][bent]") {
+  const auto on_foot = [](double radius_m) {
+    PlateSpec sheet = bent(without_points(bowl(radius_m, 1.1, 2)), 0.0015, 1600.0);
+    sheet.fixations = {ball_at({0.0, 0.0, -radius_m}, 0.2 * radius_m)};
+    return sheet;
+  };
+  const auto solved = [](const PlateSpec& sheet) {
+    BodyModes modes = build_plate_model(sheet, {}, ErrorEstimation::wanted).body.modes;
+    CHECK(modes.estimate.not_estimated.empty());
+    return modes;
+  };
+  PlateSpec joined = on_foot(0.08);
+  const PlateSpec other = on_foot(0.06);
+  const std::array<BodyModes, 2> alone{solved(joined), solved(other)};
+  std::vector<double> expected;
+  double largest_drop = 0.0;
+  for (const BodyModes& one : alone) {
+    const Eigen::ArrayXd& estimated = one.estimate.kappa_rad_per_m;
+    REQUIRE(estimated.size() >= one.kappa_rad_per_m.size());
+    REQUIRE(one.kappa_rad_per_m.size() >= 2);
+    const auto both = one.kappa_rad_per_m.size();
+    largest_drop =
+        std::max(largest_drop, (one.kappa_rad_per_m / estimated.head(both) - 1.0).maxCoeff());
+    expected.insert(expected.end(), estimated.begin(), estimated.begin() + both);
+  }
+  CHECK(largest_drop > 1e-3);  // else nothing is estimated
+  std::ranges::sort(expected);
+  const JointSpring::End from{0, joined.fixations[0]};
+  const JointSpring::End to{1, other.fixations[0]};
+  joined.joints = std::make_shared<const Joints>(
+      Joints{{JoinedBody{other, sheet_steel}}, {{from, to, {1.0, 1.0, 1.0}, 0.0}}});
+  const Eigen::ArrayXd together = solved(joined).estimate.kappa_rad_per_m;
+  CAPTURE(together, expected);
+  REQUIRE(together.size() >= std::ssize(expected));
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CHECK(together[static_cast<Eigen::Index>(i)] == Approx(expected[i]).epsilon(1e-5));
+  }
+}
+
 namespace {
 // A part of a tube, a radian round, 50 times wider than thick; held at its left end, which is bent.
 constexpr double panel_width_m = 0.1;

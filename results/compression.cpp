@@ -10,6 +10,7 @@
 namespace tapstudy::results {
 namespace {
 constexpr int compression_level = 1;
+constexpr std::size_t most_kept_bytes = 4 << 20;  // more than a chunk of a trace takes
 
 std::size_t checked(std::size_t result) {
   if (ZSTD_isError(result) != 0U) {
@@ -35,7 +36,11 @@ std::vector<std::byte> compressed(std::span<const std::byte> plain) {
   room.resize(std::max(room.size(), ZSTD_compressBound(plain.size())));
   const std::size_t size =
       checked(ZSTD_compress2(context.get(), room.data(), room.size(), plain.data(), plain.size()));
-  return {room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size)};
+  std::vector<std::byte> bytes{room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size)};
+  if (room.size() > most_kept_bytes) {  // a surface, once for a study
+    room = std::vector<std::byte>{};
+  }
+  return bytes;
 }
 
 std::vector<std::byte> decompressed(std::span<const std::byte> bytes, std::size_t size,

@@ -31,7 +31,7 @@ def cut_tables(driver):
 class Report(unittest.TestCase):
     def setUp(self):
         self.directory = Path(tempfile.mkdtemp(prefix="tapstudy_report_"))
-        self.driver = browser.start_browser()
+        self.driver = browser.start_browser(has_webgl=False)
         self.addCleanup(self.driver.quit)
 
     def run_program(self, *options):

@@ -27,7 +27,7 @@ class WholeSession(unittest.TestCase):
         browser.open_participant(self.driver, self.session.participant)
 
     def watch(self):
-        self.operator = browser.start_browser(820, 1180)
+        self.operator = browser.start_browser(820, 1180, has_webgl=False)
         self.addCleanup(self.operator.quit)
         browser.open_operator(self.operator, self.session.operator)
 

@@ -112,6 +112,7 @@ class CutCable:
     def __init__(self, server, most, on_cut=lambda: None):
         self.server, self.most, self.on_cut, self.was_cut = server, most, on_cut, False
         self.listener = socket.create_server(("127.0.0.1", 0))
+        self.listener.settimeout(60)  # where nobody connects, nothing is cut, which fails
         self.port = self.listener.getsockname()[1]
         self.thread = threading.Thread(target=self.accept)
         self.thread.start()

@@ -342,7 +342,7 @@ using protocols::LikelihoodTable;
 using protocols::QuestPlusTrack;
 
 namespace {
-constexpr int sequences_of_each = 150;
+constexpr int sequences_of_each = 50;
 constexpr double precision = 1e-12;
 const std::string folder = "tests/protocols/procedures/";
 

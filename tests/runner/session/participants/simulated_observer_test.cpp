@@ -344,7 +344,7 @@ struct Recovered {
 // More of them by hand.
 int runs_each() {
   const char* const asked = std::getenv("TAPSTUDY_RUNS");
-  return asked == nullptr ? 100 : std::stoi(asked);
+  return asked == nullptr ? 60 : std::stoi(asked);
 }
 
 Recovered recovered(const std::string& procedure) {

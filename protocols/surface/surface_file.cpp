@@ -35,30 +35,38 @@ std::string ending_of(const std::string& file) {
   return core::lower_case(std::filesystem::path{file}.extension().string());
 }
 
-// What else bodies come as, and the program that makes triangles of it.
+// What else bodies come as, the program that makes triangles of it, and what its numbers are then:
+// assimp turns COLLADA, whose files name their unit, into metres, and leaves 3MF, whose files do
+// so, too, as it is; gmsh turns STEP and IGES into millimetres.
 struct Converter {
   std::string_view ending;
   std::string_view holds;
   std::string_view command;
+  std::string_view metres_per_unit;
 };
+constexpr std::string_view by_assimp = "assimp export {} body.ply (Debian: assimp-utils)";
+constexpr std::string_view by_gmsh = "gmsh {} -2 -o body.stl (Debian: gmsh)";
+constexpr std::string_view y_is_up = "1 (and y is up: rotation_rad [1.5708, 0, 0] turns it to z)";
 constexpr std::array<Converter, 8> converters{
-    Converter{".3mf", "3MF", "assimp export {} body.ply (Debian: assimp-utils)"},
-    Converter{".gltf", "glTF", "assimp export {} body.ply (Debian: assimp-utils)"},
-    Converter{".glb", "glTF", "assimp export {} body.ply (Debian: assimp-utils)"},
-    Converter{".dae", "COLLADA", "assimp export {} body.ply (Debian: assimp-utils)"},
-    Converter{".step", "STEP: curved faces", "gmsh {} -2 -o body.stl (Debian: gmsh)"},
-    Converter{".stp", "STEP: curved faces", "gmsh {} -2 -o body.stl (Debian: gmsh)"},
-    Converter{".iges", "IGES: curved faces", "gmsh {} -2 -o body.stl (Debian: gmsh)"},
-    Converter{".igs", "IGES: curved faces", "gmsh {} -2 -o body.stl (Debian: gmsh)"},
+    Converter{".3mf", "3MF", by_assimp,
+              "what the file's <model unit=…> says, and 0.001 where that is missing"},
+    Converter{".gltf", "glTF", by_assimp, y_is_up},
+    Converter{".glb", "glTF", by_assimp, y_is_up},
+    Converter{".dae", "COLLADA", by_assimp, y_is_up},
+    Converter{".step", "STEP: curved faces", by_gmsh, "0.001"},
+    Converter{".stp", "STEP: curved faces", by_gmsh, "0.001"},
+    Converter{".iges", "IGES: curved faces", by_gmsh, "0.001"},
+    Converter{".igs", "IGES: curved faces", by_gmsh, "0.001"},
 };
 
 [[noreturn]] void refuse_format(const std::string& file) {
   const auto* const known = std::ranges::find(converters, ending_of(file), &Converter::ending);
   throw core::InvalidInput{fmt::format(
       "{}: is not a surface that is read (one of: .stl, .ply, .off, .obj){}", file,
-      known == converters.end() ? ""
-                                : fmt::format("; it holds {}. Convert it: {}", known->holds,
-                                              fmt::format(fmt::runtime(known->command), file)))};
+      known == converters.end()
+          ? ""
+          : fmt::format("; it holds {}. Convert it: {}; metres_per_unit is then {}", known->holds,
+                        fmt::format(fmt::runtime(known->command), file), known->metres_per_unit))};
 }
 
 [[noreturn]] void refuse_off(const SurfaceSource& source) {

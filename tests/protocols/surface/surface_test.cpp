@@ -351,12 +351,17 @@ TEST_CASE("a PLY that is none is refused with what was found", "[protocols][surf
           "holds 8 points and no face");
 }
 
-TEST_CASE("another format is refused with the program that converts it", "[protocols][surface]") {
+TEST_CASE("another format is refused with the program that converts it and its unit of length",
+          "[protocols][surface]") {
   for (const char* const name : {"body.3mf", "body.gltf", "body.GLB"}) {
     CHECK_THROWS_WITH(read_text(name, "x"),
                       Contains(std::string{"assimp export "} + name + " body.ply"));
   }
-  CHECK_THROWS_WITH(read_text("body.step", "x"), Contains("gmsh body.step -2 -o body.stl"));
+  CHECK_THROWS_WITH(read_text("body.step", "x"), Contains("gmsh body.step -2 -o body.stl") &&
+                                                     Contains("metres_per_unit is then 0.001"));
+  CHECK_THROWS_WITH(read_text("body.3mf", "x"), Contains("metres_per_unit is then what the file's "
+                                                         "<model unit=…> says"));
+  CHECK_THROWS_WITH(read_text("body.dae", "x"), Contains("metres_per_unit is then 1 (and y is up"));
   CHECK_THROWS_WITH(read_text("body.doc", "x"), Contains(".stl, .ply, .off, .obj"));
 }
 

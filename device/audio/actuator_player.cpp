@@ -78,7 +78,11 @@ void ActuatorPlayer::play(std::int64_t now) {
     const std::lock_guard lock{mutex_};
     source_.fill(period_, clock_.first_frame_ns(), clock_.frame_ns(), now);
   }
-  note(sink_->write(period_));
+  const PcmOutcome outcome = sink_->write(period_);
+  if (outcome != PcmOutcome::played) {
+    clock_.restart();
+  }
+  note(outcome);
   played_.notify_all();
 }
 

@@ -33,7 +33,12 @@ ProbedCard probe_card(PcmSink& sink, double seconds, const CardTime& time) {
                    frames_to_ns(static_cast<double>(sink.delay_frames().value_or(0))));
     const PcmOutcome outcome = sink.write(silence);
     played.note(outcome, sink);
-    to_fill = outcome == PcmOutcome::played ? std::max(0L, to_fill - period) : buffer - period;
+    if (outcome == PcmOutcome::played) {
+      to_fill = std::max(0L, to_fill - period);
+    } else {
+      to_fill = buffer - period;
+      clock.restart();
+    }
     // a card that tells of no sample just after it was given a period tells nothing
     if (const long filled = sink.delay_frames().value_or(0); filled > 0 && to_fill == 0) {
       probed.lateness.add(

@@ -239,6 +239,30 @@ TEST_CASE("the rate of a card is found in times that jitter, and its periods' be
   CHECK(clock.frame_ns() == Approx(1e9 / card_hz).epsilon(2e-4));
 }
 
+TEST_CASE("a card that tells its time in whole periods has a clock all the same",
+          "[device][actuator]") {
+  device::SampleClock clock{card_hz, period_frames};
+  double worst_ns = 0.0;
+  for (int i = 0; i < 20'000; ++i) {
+    clock.measured(i * 1e6 + (i % 3 == 0 ? 1e6 : 0.0));  // late by a third of a period on average
+    if (i > 10'000) {
+      worst_ns = std::max(worst_ns, std::abs(clock.first_frame_ns() - (i + 1.0 / 3.0) * 1e6));
+    }
+  }
+  CHECK(worst_ns < 2e4);
+  CHECK(clock.jitter_s() == Approx(1e-3 * std::sqrt(2.0) / 3.0).epsilon(0.05));
+}
+
+TEST_CASE("a gap that a card reports begins its time anew", "[device][actuator]") {
+  device::SampleClock clock{card_hz, period_frames};
+  for (int i = 0; i < 100; ++i) {
+    clock.measured(i * 1e6);
+  }
+  clock.restart();
+  clock.measured(100.7e6);
+  CHECK(clock.first_frame_ns() == 100.7e6);
+}
+
 TEST_CASE("a gap in a card's time is followed at once", "[device][actuator]") {
   device::SampleClock clock{card_hz, period_frames};
   for (int i = 0; i < 100; ++i) {

@@ -40,11 +40,14 @@ const char* to_text(TickFault fault) noexcept {
     case TickFault::velocity_wrong:
       return "the device reports a velocity that is not the change of its position (in m/s?)";
     case TickFault::position_frozen:
-      return "the device replies, but its position stands still under force, or is too old "
-             "(encoders?)";
+      return "the device replies, but its position stands still under force or is old (encoders?)";
     case TickFault::periods_missed:
       return "too many of the loop's periods were missed within a second: the device replies late, "
              "or the machine is busy (tapstudy doctor --rig measures both)";
+    case TickFault::actuator_gaps:
+      return "the actuator's card had more gaps than actuator.max_gaps (tapstudy doctor --rig)";
+    case TickFault::actuator_lost:
+      return "the actuator's sound card plays no more (is it plugged in?)";
     case TickFault::tensions_unsolved:
       return "no string tensions were found for the force";
     case TickFault::too_late:

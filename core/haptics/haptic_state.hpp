@@ -30,7 +30,9 @@ enum class TickFault : std::uint8_t {
   force_released,      // the device released the force in the middle of a trial
   velocity_wrong,      // the device reports a velocity that is not the change of its position
   position_frozen,     // the device replies, but its position stands still while force is on
-  periods_missed       // more of the loop's periods than allowed, within a second
+  periods_missed,      // more of the loop's periods than allowed, within a second
+  actuator_gaps,       // more of them in the trial than the rig tolerates
+  actuator_lost        // its card plays no more
 };
 // Message for the operator and the record; empty for none.
 const char* to_text(TickFault fault) noexcept;

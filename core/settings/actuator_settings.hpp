@@ -30,6 +30,7 @@ struct ActuatorOutput {
   double full_scale_n{};  // the force at full scale
   ActuatorLimits limits;
   double max_delay_s{0.004};  // from a tick to its sound
+  int max_gaps{3};            // of the card in a trial, each of which spoils at most one tap
   ActuatorResponse response;
 };
 }  // namespace tapstudy::core

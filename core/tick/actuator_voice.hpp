@@ -25,6 +25,7 @@ struct ActuatorTick {
   std::uint8_t alternative;
   bool touching;
   bool impact;
+  bool is_last;  // the loop ends here, in order; no tick, and without contact
 };
 static_assert(std::is_trivially_copyable_v<ActuatorTick>);
 ActuatorTick actuator_tick(const Contact& contact) noexcept;

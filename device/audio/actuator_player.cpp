@@ -9,19 +9,20 @@ namespace tapstudy::device {
 namespace {
 constexpr double fastest_card = 1.002;  // against this machine's clock
 
-double delay_of(const PcmSink& sink) {
-  return static_cast<double>(sink.buffer_frames() + sink.period_frames()) / sink.rate_hz();
-}
-
 std::int64_t now_ns() noexcept {
   return std::chrono::nanoseconds{std::chrono::steady_clock::now().time_since_epoch()}.count();
 }
 }  // namespace
 
+double actuator_delay_s(const PcmSink& sink) {
+  return static_cast<double>(sink.buffer_frames() + sink.period_frames()) / sink.rate_hz();
+}
+
 ActuatorPlayer::ActuatorPlayer(std::unique_ptr<PcmSink> sink, const Settings& settings)
     : sink_{std::move(sink)},
       realtime_{settings.realtime},
-      delay_s_{delay_of(*sink_)},
+      max_gaps_{settings.max_gaps},
+      delay_s_{actuator_delay_s(*sink_)},
       clock_{sink_->rate_hz(), static_cast<double>(sink_->period_frames())},
       period_(sink_->period_frames()),
       source_{
@@ -37,10 +38,15 @@ void ActuatorPlayer::begin(std::span<core::ActuatorVoice> voices) {
   const std::lock_guard lock{mutex_};
   source_.use(voices);
   actuated_.underruns = 0;
+  note_fault();
 }
 
 Actuated ActuatorPlayer::end() {
-  const std::lock_guard lock{mutex_};
+  // a card that takes nothing has no end to wait for
+  constexpr std::chrono::milliseconds longer_than_a_card_waits{250};
+  std::unique_lock lock{mutex_};
+  played_.wait_for(lock, longer_than_a_card_waits + std::chrono::duration<double>{delay_s_},
+                   [this] { return actuated_.loss || source_.is_done(); });
   actuated_.limited = source_.limited();
   source_.use({});
   return actuated_;
@@ -72,7 +78,12 @@ void ActuatorPlayer::play(std::int64_t now) {
     const std::lock_guard lock{mutex_};
     source_.fill(period_, clock_.first_frame_ns(), clock_.frame_ns(), now);
   }
-  note(sink_->write(period_));
+  const PcmOutcome outcome = sink_->write(period_);
+  if (outcome != PcmOutcome::played) {
+    clock_.restart();
+  }
+  note(outcome);
+  played_.notify_all();
 }
 
 void ActuatorPlayer::note(PcmOutcome outcome) {
@@ -80,5 +91,15 @@ void ActuatorPlayer::note(PcmOutcome outcome) {
   actuated_.note(outcome, *sink_);
   actuated_.rate_error = clock_.rate_error();
   actuated_.jitter_s = clock_.jitter_s();
+  note_fault();
+}
+
+void ActuatorPlayer::note_fault() {
+  using enum core::TickFault;
+  const bool has_too_many_gaps = actuated_.underruns > max_gaps_;
+  fault_.store(actuated_.loss      ? actuator_lost
+               : has_too_many_gaps ? actuator_gaps
+                                   : none,
+               std::memory_order_release);
 }
 }  // namespace tapstudy::device

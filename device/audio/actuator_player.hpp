@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "device/audio/actuator_source.hpp"
 #include "device/audio/pcm.hpp"
 #include "device/audio/sample_clock.hpp"
+#include "device/loop/haptic_loop.hpp"
 namespace tapstudy::device {
 // What became of the actuator's samples since the latest begin(); the clock's, of the session.
 struct Actuated : PlayedPeriods {
@@ -19,15 +21,19 @@ struct Actuated : PlayedPeriods {
   double jitter_s{};       // of the measured times of its periods
 };
 
+// From a tick of the haptic loop to its sound, always: the time in which the card plays a buffer
+// and a period.
+double actuator_delay_s(const PcmSink& sink);
+
 // Plays a trial's actuator voices through a card on a thread of its own, silence between trials, so
-// that the card's clock stays known. What a tick of the haptic loop excites is heard delay_s()
-// later, always: the time in which a buffer and a period are played.
+// that the card's clock stays known.
 class ActuatorPlayer {
  public:
   struct Settings {
     double full_scale_n{};
     core::ActuatorLimits limits;
     double tick_s{};  // of the haptic loop
+    int max_gaps{};   // in a trial; more are a fault of it
     core::RealtimeRequest realtime;
   };
   ActuatorPlayer(std::unique_ptr<PcmSink> sink, const Settings& settings);
@@ -38,10 +44,11 @@ class ActuatorPlayer {
   ActuatorPlayer& operator=(ActuatorPlayer&&) = delete;
 
   // Of the haptic loop.
-  core::SpscRing<core::ActuatorTick>& ticks() noexcept { return source_.ticks(); }
+  ActuatorLink link() noexcept { return {&source_.ticks(), &fault_}; }
   // The alternatives of a trial, which must outlive it.
   void begin(std::span<core::ActuatorVoice> voices);
-  // The voices are not used any more; what was heard of them fades.
+  // Returns when all is heard of a loop that has ended in order, at once after another; the voices
+  // are not used any more.
   Actuated end();
   std::optional<AudioLoss> loss();
   double rate_hz() const { return sink_->rate_hz(); }
@@ -51,15 +58,19 @@ class ActuatorPlayer {
   void run();
   void play(std::int64_t now_ns);
   void note(PcmOutcome outcome);
+  void note_fault();
 
   std::unique_ptr<PcmSink> sink_;
   core::RealtimeRequest realtime_;
+  int max_gaps_;
   double delay_s_;
   SampleClock clock_;  // the thread's, like the period
   std::vector<float> period_;
   std::mutex mutex_;  // of what follows; held for as long as a period takes to compute
+  std::condition_variable played_;  // a period
   ActuatorSource source_;
   Actuated actuated_;
+  std::atomic<core::TickFault> fault_{core::TickFault::none};  // of the trial
   std::atomic<bool> is_ending_{false};
   std::thread thread_;
 };

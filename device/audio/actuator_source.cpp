@@ -29,6 +29,7 @@ ActuatorSource::ActuatorSource(const Settings& settings)
 void ActuatorSource::use(std::span<core::ActuatorVoice> voices) noexcept {
   take_ticks();
   first_ = count_ = 0;  // of the trial before
+  is_newest_last_ = false;
   heard_ = nullptr;
   voices_ = voices;
   limited_ = 0;
@@ -39,8 +40,8 @@ void ActuatorSource::fill(std::span<float> samples, double heard_at_ns, double f
                           std::int64_t now_ns) noexcept {
   take_ticks();
   const double without_tick_s = 1e-9 * static_cast<double>(now_ns - newest_ns_);
-  if (without_tick_s >
-      std::max(least_without_tick_s, most_periods_without_tick * settings_.tick_s)) {
+  if (!is_newest_last_ && without_tick_s > std::max(least_without_tick_s,
+                                                    most_periods_without_tick * settings_.tick_s)) {
     if (heard_ != nullptr && !has_faded_) {
       heard_->fade(static_cast<int>(samples.size()));
       has_faded_ = true;
@@ -57,11 +58,17 @@ void ActuatorSource::fill(std::span<float> samples, double heard_at_ns, double f
   }
 }
 
+bool ActuatorSource::is_done() noexcept {
+  take_ticks();
+  return voices_.empty() || !is_newest_last_ || (count_ == 0 && end_left_ == 0);
+}
+
 // What does not fit has waited for longer than the delay: the oldest is dropped.
 void ActuatorSource::take_ticks() noexcept {
   core::ActuatorTick tick{};
   while (ticks_.try_pop(tick)) {
     newest_ns_ = tick.at_ns;
+    is_newest_last_ = tick.is_last;
     if (count_ == waiting_.size()) {
       first_ = (first_ + 1) % waiting_.size();
       --count_;
@@ -84,6 +91,7 @@ double ActuatorSource::next_force_n(double at_ns) noexcept {
   if (heard_ != nullptr) {
     heard_->advance();
   }
+  end_left_ = std::max(0, end_left_ - 1);
   while (const core::ActuatorTick* const tick = due(at_ns)) {
     begin(*tick);
   }
@@ -106,6 +114,7 @@ void ActuatorSource::begin(const core::ActuatorTick& tick) noexcept {
     heard_ = voice;
   }
   has_faded_ = false;
+  end_left_ = tick.is_last ? samples_a_tick_ : 0;
   voice->begin(tick, samples_a_tick_);
 }
 

@@ -11,8 +11,9 @@ namespace tapstudy::device {
 // after its time. Everything but `ticks` is the audio thread's.
 //
 // The ticks cease when the loop has stalled, faulted or ended: two of its periods, and 2 ms,
-// without one end what is heard within a period of samples. Where one waveform ends and another
-// begins, or none, the difference fades over a millisecond.
+// without one end what is heard within a period of samples. Of a loop that has ended in order, all
+// ticks are heard. Where one waveform ends and another begins, or none, the difference fades over a
+// millisecond.
 class ActuatorSource {
  public:
   struct Settings {
@@ -32,6 +33,8 @@ class ActuatorSource {
   // now `now_ns`. All by the loop's clock.
   void fill(std::span<float> samples, double heard_at_ns, double frame_ns,
             std::int64_t now_ns) noexcept;
+  // Takes what the loop has told; whether nothing of it is still to be heard.
+  bool is_done() noexcept;
   std::int64_t limited() const noexcept { return limited_; }  // samples, since use()
 
  private:
@@ -47,6 +50,8 @@ class ActuatorSource {
   std::size_t first_{0};
   std::size_t count_{0};
   std::int64_t newest_ns_{0};
+  bool is_newest_last_{false};
+  int end_left_{0};  // samples until what the last tick ended is silent
   std::span<core::ActuatorVoice> voices_;
   core::ActuatorVoice* heard_{nullptr};
   bool has_faded_{false};

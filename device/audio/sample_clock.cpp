@@ -6,6 +6,7 @@ namespace tapstudy::device {
 namespace {
 constexpr double bandwidth_hz = 0.2;
 constexpr double settling_ns = 1e9;
+constexpr double max_error_periods = 2.0;
 }  // namespace
 
 SampleClock::SampleClock(double rate_hz, double period_frames) noexcept
@@ -17,7 +18,7 @@ SampleClock::SampleClock(double rate_hz, double period_frames) noexcept
 
 void SampleClock::measured(double heard_at_ns) noexcept {
   const double error_ns = heard_at_ns - next_ns_;
-  if (periods_ == 0 || std::abs(error_ns) > 0.5 * nominal_ns_) {
+  if (periods_ == 0 || std::abs(error_ns) > max_error_periods * nominal_ns_) {
     begins_ns_ = heard_at_ns;
     next_ns_ = heard_at_ns + nominal_ns_;
     period_ns_ = nominal_ns_;

@@ -6,13 +6,16 @@ namespace tapstudy::device {
 // to filter time, Linux Audio Conference). With T the length of a period as estimated so far, t the
 // time predicted for the next one and e the measured time less t,
 //     t' = t + b e + T,   T' = T + c e,   b = √2 w, c = w², w = 2 pi B T0,
-// B the bandwidth and T0 the nominal length. A period that is off by more than half its length has
-// not been played on: the loop starts anew.
+// B the bandwidth and T0 the nominal length. Cards that tell what they have played in whole periods
+// are off by one at most; a period that is off by more than two has not been played on, and the
+// loop starts anew, as after a gap that the card reports.
 class SampleClock {
  public:
   SampleClock(double rate_hz, double period_frames) noexcept;
   // The first frame of the next period is heard at this time.
   void measured(double heard_at_ns) noexcept;
+  // There was a gap.
+  void restart() noexcept { periods_ = 0; }
   // Of the latest period that was measured: its first frame, and the time from one to the next.
   double first_frame_ns() const noexcept { return begins_ns_; }
   double frame_ns() const noexcept { return period_ns_ / frames_; }

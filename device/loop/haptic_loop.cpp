@@ -38,6 +38,7 @@ void HapticLoop::run(const std::stop_token& stop) noexcept {
   gate_.stop();
   while (gate_.state() != ForceGate::State::at_rest && step()) {
   }
+  tell_actuator_of_end();
   zero_force();
 }
 
@@ -128,7 +129,13 @@ TickFault HapticLoop::fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) no
                           elapsed > settings_.max_heartbeat_gap)) {
     return TickFault::heartbeat_lost;  // or the loop itself stalled for as long
   }
-  return fault_of_lateness();
+  const TickFault fault = fault_of_lateness();
+  return fault == TickFault::none ? fault_of_actuator() : fault;
+}
+
+TickFault HapticLoop::fault_of_actuator() const noexcept {
+  return actuator_.fault == nullptr ? TickFault::none
+                                    : actuator_.fault->load(std::memory_order_acquire);
 }
 
 TickFault HapticLoop::fault_of_lateness() const noexcept {
@@ -261,7 +268,7 @@ void HapticLoop::render(const core::HandState& hand, double share, double elapse
 // What a full ring loses is stale by then.
 void HapticLoop::tell_actuator(const core::RenderedTick& rendered,
                                const core::Vec3& passed_n) noexcept {
-  if (actuator_ == nullptr) {
+  if (actuator_.ticks == nullptr) {
     return;
   }
   core::ActuatorTick tick = core::actuator_tick(rendered.contact);
@@ -269,6 +276,18 @@ void HapticLoop::tell_actuator(const core::RenderedTick& rendered,
   tick.at_ns = last_tick_;
   tick.passed_share = wanted_n > 0.0 ? std::min(1.0, passed_n.norm() / wanted_n) : 1.0;
   tick.alternative = static_cast<std::uint8_t>(current_);
-  actuator_->try_push(tick);
+  actuator_.ticks->try_push(tick);
+}
+
+// After a fault it hears of no more ticks, and is silent at once.
+void HapticLoop::tell_actuator_of_end() noexcept {
+  if (actuator_.ticks == nullptr || report_.stopped_by != TickFault::none) {
+    return;
+  }
+  core::ActuatorTick end = core::actuator_tick({});
+  end.at_ns = last_tick_ + settings_.period;
+  end.alternative = static_cast<std::uint8_t>(current_);
+  end.is_last = true;
+  actuator_.ticks->try_push(end);
 }
 }  // namespace tapstudy::device

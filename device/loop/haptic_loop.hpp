@@ -37,6 +37,13 @@ struct LoopSettings {
 
 inline constexpr std::size_t max_alternatives = 128;  // traces have a byte for it
 
+// An actuator beside the device: it is told of every tick, and what fails it is a fault of the
+// loop.
+struct ActuatorLink {
+  core::SpscRing<core::ActuatorTick>* ticks{nullptr};
+  const std::atomic<core::TickFault>* fault{nullptr};
+};
+
 // wait → read → render → limit → write → record, once per period, for one trial. The renderers are
 // the trial's alternatives; a switch request takes effect in the first tick without contact, so
 // that the force law never changes during contact. A period that was missed is not made up for in
@@ -53,8 +60,8 @@ class HapticLoop {
              core::SpscRing<core::TraceSample>& trace, TickClock& clock,
              ScriptedHand* taps = nullptr) noexcept;
 
-  // Tells an actuator of every tick. Before the first one.
-  void tell(core::SpscRing<core::ActuatorTick>& actuator) noexcept { actuator_ = &actuator; }
+  // Before the first tick.
+  void use(const ActuatorLink& actuator) noexcept { actuator_ = actuator; }
   // May be called from any thread. index < number of alternatives.
   void request_alternative(std::size_t index) noexcept {
     requested_.store(index, std::memory_order_release);
@@ -103,6 +110,7 @@ class HapticLoop {
   core::TickFault fault_of_time(Nanoseconds woke_at, Nanoseconds elapsed) noexcept;
   core::TickFault fault_of_absence(Nanoseconds elapsed) noexcept;
   core::TickFault fault_of_lateness() const noexcept;
+  core::TickFault fault_of_actuator() const noexcept;
   double bridging_share(const DeviceDetail& detail, Nanoseconds elapsed) noexcept;
   core::TraceSample unread_sample(Nanoseconds now) const noexcept;
   core::TraceSample tick(Nanoseconds now, Nanoseconds elapsed) noexcept;
@@ -111,6 +119,7 @@ class HapticLoop {
   core::RenderedTick follow(const core::HandState& hand, core::TraceSample& sample) noexcept;
   core::RenderedTick follow_taps(int periods, core::TraceSample& sample) noexcept;
   void tell_actuator(const core::RenderedTick& rendered, const core::Vec3& passed_n) noexcept;
+  void tell_actuator_of_end() noexcept;
   void take_requests() noexcept;
   void note_lateness(Nanoseconds woke_at) noexcept;
 
@@ -120,7 +129,7 @@ class HapticLoop {
   core::SpscRing<core::TraceSample>& trace_;
   TickClock& clock_;
   ScriptedHand* taps_;  // nullptr: the device's hand taps
-  core::SpscRing<core::ActuatorTick>* actuator_{nullptr};
+  ActuatorLink actuator_;
   ForceGate gate_;
   std::atomic<std::size_t> requested_{0};
   std::atomic<bool> silence_requested_{false};

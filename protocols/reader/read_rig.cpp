@@ -188,6 +188,9 @@ void read_actuator(MapReader& top, Rig& rig) {
         actuator.max_delay_s = reader.number(
             {"max_delay_s", "from the tick of an impact to its sound; it is the same for all"},
             {0.001, 0.1}, actuator.max_delay_s);
+        actuator.max_gaps = reader.integer(
+            {"max_gaps", "of the card's sound in a trial; more are a fault, which ends the trial"},
+            0, 1'000'000, actuator.max_gaps);
         actuator.response = core::ActuatorResponse::flat();
         reader.map(
             {"response", "what it makes of a command, undone mode by mode; unset: as commanded"},

@@ -260,6 +260,7 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   add_devices(line);
   add_doctor(line);
   add_calibrate(line);
+  add_calibrate_actuator(line);
   add_schema(line);
   if (argc == 3 && std::string_view{argv[1]} == "--documents") {  // for the build: not in --help
     write_command_documents(line.definition(), argv[2]);

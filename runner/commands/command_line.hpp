@@ -99,6 +99,7 @@ void add_identify(CommandParser& line);
 void add_devices(CommandParser& line);
 void add_doctor(CommandParser& line);
 void add_calibrate(CommandParser& line);
+void add_calibrate_actuator(CommandParser& line);
 void add_schema(CommandParser& line);
 
 // Parses and runs one command line. Throws what the command throws.

@@ -7,6 +7,7 @@
 #include "device/device.hpp"
 #include "device/loop/sleep_inhibitor.hpp"
 #include "runner/commands/command_line.hpp"
+#include "runner/session/devices/actuator_card.hpp"
 #include "runner/session/devices/device_kind.hpp"
 #include "runner/session/devices/diagnosis.hpp"
 #include "runner/session/devices/rigs.hpp"
@@ -36,13 +37,42 @@ void print(const char* name, const device::LatenessCount& times, const std::stri
              rest);
 }
 
+constexpr const char* const lateness_header =
+    "               median       p99     p99.9       95 % of p99.9     worst    {}  holds\n";
+
+const char* to_text(Holds found) {
+  return found == Holds::yes ? "yes" : found == Holds::no ? "no" : "open";
+}
+
 void print(const char* name, const Diagnosis& diagnosis, const device::ProbedLoop& probed) {
-  const Holds found = holds(diagnosis, probed);
   print(name, probed.lateness,
-        fmt::format("{:>8}  {}", probed.late,
-                    found == Holds::yes  ? "yes"
-                    : found == Holds::no ? "no"
-                                         : "open"));
+        fmt::format("{:>8}  {}", probed.late, to_text(holds(diagnosis, probed))));
+}
+
+void print(const char* name, const device::ProbedCard& card) {
+  print(name, card.lateness, fmt::format("{:>8}  {}", card.gaps, to_text(holds(card))));
+}
+
+void print(const DiagnosedCard& card, const core::ActuatorOutput& actuator) {
+  const device::ProbedCard& idle = card.idle;
+  fmt::print("\nactuator   card {}, {} Hz: period {:.2f} ms, buffer {:.2f} ms, delay {:.2f} ms\n",
+             actuator.card, idle.rate_hz, 1e3 * idle.period_s, 1e3 * idle.buffer_s,
+             1e3 * (idle.buffer_s + idle.period_s));
+  fmt::print("its clock  jitter {:.1f} us, drift {:+.1f} ppm against the loop's\n",
+             1e6 * idle.jitter_s, 1e6 * idle.rate_error);
+  if (idle.lateness.count() == 0) {
+    fmt::print(
+        "its gaps   {} idle, {} under load; lateness unknown: it does not tell what it has "
+        "played\n",
+        idle.gaps, card.loaded.gaps);
+    return;
+  }
+  fmt::print("\nlateness [us] of {} periods of the actuator's card\n", idle.lateness.count());
+  fmt::print(lateness_header, "gaps");
+  print("idle", idle);
+  print("loaded", card.loaded);
+  fmt::print("  holds: no gap, and p99.9 is within {:.0f} us\n",
+             microseconds(max_p999_lateness(idle)));
 }
 
 void print(const Diagnosis& diagnosis) {
@@ -57,8 +87,7 @@ void print(const Diagnosis& diagnosis) {
   }
   fmt::print("\nlateness [us] of {} ticks at {} Hz\n", diagnosis.idle.lateness.count(),
              1e9 / static_cast<double>(diagnosis.period));
-  fmt::print(
-      "               median       p99     p99.9       95 % of p99.9     worst    late  holds\n");
+  fmt::print(lateness_header, "late");
   print("idle", diagnosis, diagnosis.idle);
   if (diagnosis.loaded) {
     print("loaded", diagnosis, *diagnosis.loaded);
@@ -123,6 +152,25 @@ std::function<void()> zero_force_exchange(const DoctorOptions& options, const pr
   return {};
 }
 
+// As the loop was: with nothing else to do, then under load.
+DiagnosedCard diagnosed(const core::ActuatorOutput& actuator, const protocols::Rig& rig,
+                        double seconds) {
+  const auto card = open_actuator_card(actuator);
+  const core::RealtimeRequest request = device::below(rig.realtime);
+  DiagnosedCard found{device::probe_card(*card, seconds, request), {}};
+  {
+    const device::Load load;
+    found.loaded = device::probe_card(*card, seconds, request);
+  }
+  for (const device::ProbedCard* const probed : {&found.idle, &found.loaded}) {
+    if (probed->loss) {
+      throw device::DeviceError{
+          fmt::format("the actuator's card plays no more ({})", probed->loss->why)};
+    }
+  }
+  return found;
+}
+
 void run_doctor(const DoctorOptions& options) {
   const protocols::Rig rig = options.rig.empty() ? simulated_rig() : read_rig(options.rig);
   const std::string release = kind_of(rig).tried_release(rig);
@@ -131,7 +179,13 @@ void run_doctor(const DoctorOptions& options) {
                options.seconds, Under::load_too, zero_force_exchange(options, rig));
   diagnosis.release = release;
   diagnosis.sleep = device::SleepInhibitor{}.outcome();
+  if (rig.actuator) {
+    diagnosis.actuator = diagnosed(*rig.actuator, rig, options.seconds);
+  }
   print(diagnosis);
+  if (rig.actuator) {
+    print(*diagnosis.actuator, *rig.actuator);
+  }
   if (!options.figure.empty()) {
     draw(diagnosis, options.figure);
   }

@@ -416,7 +416,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
         "the rig has no section 'actuator': what rendering.crossover_hz leaves to one is not "
         "rendered");
   }
-  const auto actuated =
+  std::unique_ptr<device::ActuatorPlayer> actuated =
       actuator == nullptr ? nullptr : actuator_player(*actuator, live.protocol, live.rig);
   results::Store store = open_study(live.directory, live.protocol, live.protocol_file);
   check_names(store, live.protocol);
@@ -428,7 +428,7 @@ LiveOutcome run_live_session(const LiveSession& live) {
   device->begin_session(session.row.seed);
   const auto masking = masking_player(std::move(card), live.protocol, live.rig, session.row.seed);
   LiveTrials{{live, settings, models, device_request, input, commands, ask_operator, masking.get(),
-              actuated.get(), markers, store, session},
+              actuated, markers, store, session},
              std::move(device)}
       .run();
   return outcome_of(session, live.protocol, store);

@@ -222,6 +222,16 @@ double LiveTrials::now_s() const {
   return std::chrono::duration<double>(Clock::now() - begun_).count();
 }
 
+void LiveTrials::reopen_lost_actuator() {
+  if (parts_.actuator && parts_.actuator->loss()) {
+    const protocols::Protocol& protocol = parts_.live.protocol;
+    const protocols::Rig& rig = parts_.live.rig;
+    parts_.actuator.reset();  // only one can hold the card
+    parts_.actuator = actuator_player(*actuator_of(protocol, rig), protocol, rig);
+    live_loop_.use(*parts_.actuator);
+  }
+}
+
 void LiveTrials::run() {
   std::optional<OperatorTerminal> terminal;
   if (console_) {
@@ -234,6 +244,7 @@ void LiveTrials::run() {
     live_loop_.use(device_->device());
     const bool is_off = device_->device().zero_force() == device::StopOutcome::confirmed;
     desk_.force_is(is_off ? ForceState::off : ForceState::unknown);
+    reopen_lost_actuator();
   }
 }
 }  // namespace tapstudy::runner

@@ -29,17 +29,18 @@ class LiveTrials {
     const device::LoopSettings& settings;
     ModelLibrary& models;
     const DeviceRequest& device_request;
-    LineInput& input;                  // of the terminal
-    TypedCommands& commands;           // typed there; possible from now on
-    AskOperator& ask_operator;         // of device_request: changed where there are pages
-    device::AudioPlayer* masking;      // nullptr: no noise
-    device::ActuatorPlayer* actuator;  // nullptr: none
+    LineInput& input;              // of the terminal
+    TypedCommands& commands;       // typed there; possible from now on
+    AskOperator& ask_operator;     // of device_request: changed where there are pages
+    device::AudioPlayer* masking;  // nullptr: no noise
+    std::unique_ptr<device::ActuatorPlayer>& actuator;  // null: none
     Markers& markers;
     results::Store& store;
     BegunSession& session;
   };
   LiveTrials(const Parts& parts, std::unique_ptr<SessionDevice> device);
-  // Runs the remaining trials, reopening the device after a fault; throws as run_live_session.
+  // Runs the remaining trials, reopening the device, and an actuator's card that was lost, after a
+  // fault; throws as run_live_session.
   void run();
 
  private:
@@ -50,6 +51,7 @@ class LiveTrials {
   void get_ready();
   void hear_device();
   void repeat_device();
+  void reopen_lost_actuator();
   std::function<void(std::string_view state, const std::string& detail)> masking_marker();
 
   Parts parts_;

@@ -158,7 +158,7 @@ class TapRecorder {
         loop_{hand, stimuli.alternatives, settings, ring_, clock_},
         source_{{tap_actuator_rate_hz, full_scale_n, {}, period_s_, 0.0}} {
     source_.use(stimuli.voices);
-    loop_.tell(source_.ticks());
+    loop_.use({&source_.ticks()});
     has_actuator_ = !stimuli.voices.empty();
   }
   TapTrace record(double seconds) {

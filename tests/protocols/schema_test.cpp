@@ -363,7 +363,7 @@ TEST_CASE("the schemas of rigs and calibrations have exactly the keys that the r
         protocols::calibration_keys_asked_for(calibration(), "calibration.yaml"));
 }
 
-TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema]") {
+TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema][actuator]") {
   const std::vector<RigChange> changes{
       {"spidar_g6", "format", "format"},
       {"remote", "format", "format"},
@@ -395,6 +395,8 @@ TEST_CASE("schema and reader accept the same rigs", "[protocols][rig][schema]") 
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\naudio: {rate_hz: 1}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nactuator: {full_scale_n: 4}\n"},
       {"simulated_hand", "max_force_n: 10\n", "max_force_n: 10\nactuator: {}\n"},
+      {"simulated_hand", "max_force_n: 10\n",
+       "max_force_n: 10\nactuator: {full_scale_n: 4, max_gaps: -1}\n"},
       {"simulated_hand", "max_force_n: 10\n",
        "max_force_n: 10\nactuator: {full_scale_n: 4, response: {points: []}}\n"},
       {"simulated_hand", "max_force_n: 10\n",

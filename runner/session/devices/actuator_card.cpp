@@ -42,26 +42,31 @@ const core::ActuatorOutput* actuator_of(const protocols::Protocol& protocol,
   return protocol.rendering.crossover && rig.actuator ? &*rig.actuator : nullptr;
 }
 
-std::unique_ptr<device::ActuatorPlayer> actuator_player(const core::ActuatorOutput& actuator,
-                                                        const protocols::Protocol& protocol,
-                                                        const protocols::Rig& rig) {
+std::unique_ptr<device::PcmSink> open_actuator_card(const core::ActuatorOutput& actuator) {
   auto card = device::open_alsa({.card = actuator.card,
                                  .rate_hz = actuator.rate_hz,
                                  .period_s = shortest_period_s,
                                  .periods = fewest_periods,
                                  .channels = actuator.channels,
                                  .only_channel = actuator.channel - 1});
-  auto player = std::make_unique<device::ActuatorPlayer>(
-      std::move(card),
-      device::ActuatorPlayer::Settings{actuator.full_scale_n, actuator.limits,
-                                       protocol.rendering.dt_s, device::below(rig.realtime)});
+  const double delay_s = device::actuator_delay_s(*card);
   constexpr double rounding_s = 1e-6;
-  if (player->delay_s() > actuator.max_delay_s + rounding_s) {
+  if (delay_s > actuator.max_delay_s + rounding_s) {
     throw device::DeviceError{fmt::format(
         "actuator: card '{}' plays {:.1f} ms after a tick (at most actuator.max_delay_s, "
         "{:.1f} ms): a card itself, as in hw:CARD=NAME, buffers less than `default`",
-        actuator.card, 1e3 * player->delay_s(), 1e3 * actuator.max_delay_s)};
+        actuator.card, 1e3 * delay_s, 1e3 * actuator.max_delay_s)};
   }
-  return player;
+  return card;
+}
+
+std::unique_ptr<device::ActuatorPlayer> actuator_player(const core::ActuatorOutput& actuator,
+                                                        const protocols::Protocol& protocol,
+                                                        const protocols::Rig& rig) {
+  return std::make_unique<device::ActuatorPlayer>(
+      open_actuator_card(actuator),
+      device::ActuatorPlayer::Settings{actuator.full_scale_n, actuator.limits,
+                                       protocol.rendering.dt_s, actuator.max_gaps,
+                                       device::below(rig.realtime)});
 }
 }  // namespace tapstudy::runner

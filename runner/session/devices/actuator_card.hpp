@@ -17,6 +17,8 @@ const core::ActuatorOutput* actuator_of(const protocols::Protocol& protocol,
 
 // Opens its card. Throws DeviceError where that cannot be had, or has a longer delay than the rig
 // allows.
+std::unique_ptr<device::PcmSink> open_actuator_card(const core::ActuatorOutput& actuator);
+// A player on it. Throws likewise.
 std::unique_ptr<device::ActuatorPlayer> actuator_player(const core::ActuatorOutput& actuator,
                                                         const protocols::Protocol& protocol,
                                                         const protocols::Rig& rig);

@@ -191,7 +191,16 @@ Holds holds(const Diagnosis& diagnosis, const device::ProbedLoop& probed) {
   return is_within(max_p999_lateness(diagnosis.period), probed.lateness);
 }
 
-Verdict verdict_of(const Diagnosis& diagnosis) {
+device::Nanoseconds max_p999_lateness(const device::ProbedCard& card) {
+  return card.bridged() / 2;
+}
+
+Holds holds(const device::ProbedCard& card) {
+  return card.gaps > 0 ? Holds::no : is_within(max_p999_lateness(card), card.lateness);
+}
+
+namespace {
+Verdict verdict_of_loop(const Diagnosis& diagnosis) {
   const Holds idle = holds(diagnosis, diagnosis.idle);
   if (idle == Holds::no) {
     return {false, "this machine cannot hold the loop, even with nothing else to do"};
@@ -213,6 +222,31 @@ Verdict verdict_of(const Diagnosis& diagnosis) {
                     ? "this machine holds the loop, under load too"
                     : "this machine holds the loop as long as nothing else runs on it: close "
                       "other programs during a session"};
+}
+
+Verdict verdict_of(const DiagnosedCard& card) {
+  const Holds idle = holds(card.idle);
+  if (idle == Holds::no) {
+    return {false, "it cannot keep the actuator's card filled, even with nothing else to do"};
+  }
+  if (idle == Holds::untold) {
+    return {true, fmt::format("{} periods are too few to tell that it keeps the actuator's card "
+                              "filled",
+                              card.idle.lateness.count())};
+  }
+  return {true, holds(card.loaded) == Holds::yes
+                    ? "it keeps the actuator's card filled, under load too"
+                    : "it keeps the actuator's card filled as long as nothing else runs on it"};
+}
+}  // namespace
+
+Verdict verdict_of(const Diagnosis& diagnosis) {
+  const Verdict loop = verdict_of_loop(diagnosis);
+  if (!loop.holds || !diagnosis.actuator) {
+    return loop;
+  }
+  const Verdict card = verdict_of(*diagnosis.actuator);
+  return {card.holds, fmt::format("{}; {}", loop.words, card.words)};
 }
 
 std::string to_json(const Diagnosis& diagnosis) {

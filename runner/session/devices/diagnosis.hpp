@@ -6,8 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "device/audio/card_probe.hpp"
 #include "device/loop/loop_probe.hpp"
 namespace tapstudy::runner {
+// The actuator's card, with nothing else to do and under load.
+struct DiagnosedCard {
+  device::ProbedCard idle;
+  device::ProbedCard loaded;
+};
+
 // Measured real-time performance of the machine.
 struct Diagnosis {
   device::Nanoseconds period{};
@@ -18,6 +25,7 @@ struct Diagnosis {
   std::optional<device::ProbedLoop> loaded;
   std::optional<device::ProbedLoop> on_device;      // with an exchange at zero force in each tick
   std::optional<device::LatenessCount> round_trip;  // of the device's board, request to reply
+  std::optional<DiagnosedCard> actuator;
 };
 
 enum class Under { no_load, load_too };
@@ -29,6 +37,10 @@ std::vector<std::pair<std::string, std::string>> machine_facts(const std::filesy
 enum class Holds { no, untold, yes };
 device::Nanoseconds max_p999_lateness(device::Nanoseconds period);
 Holds holds(const Diagnosis& diagnosis, const device::ProbedLoop& probed);
+// A card is kept filled if it has no gap, and 99.9 % of its periods come within half of what its
+// buffer bridges.
+device::Nanoseconds max_p999_lateness(const device::ProbedCard& card);
+Holds holds(const device::ProbedCard& card);
 // Takes `seconds` for the idle machine, as much again under load, and as much again with an
 // exchange with the device in each tick, whose times are the round trip then. Throws what the
 // exchange does.

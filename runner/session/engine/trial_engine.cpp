@@ -25,8 +25,8 @@ bool has_late_impact(const TrialResult& result) {
 // be to what nobody felt.
 bool is_found_late(core::TickFault fault) {
   using enum core::TickFault;
-  constexpr std::array all{position_frozen, force_not_followed, velocity_wrong,
-                           periods_missed,  too_late,           amplifier_off};
+  constexpr std::array all{position_frozen, force_not_followed, velocity_wrong, periods_missed,
+                           too_late,        amplifier_off,      actuator_gaps,  actuator_lost};
   return std::ranges::find(all, fault) != all.end();
 }
 }  // namespace

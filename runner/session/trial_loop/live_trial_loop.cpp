@@ -120,7 +120,7 @@ TrialResult LiveTrialLoop::run(const Rendered& rendered, const Explore& explore)
     if (const auto loss = actuator_->loss()) {
       throw device::DeviceError{fmt::format("the actuator plays no more ({})", loss->why)};
     }
-    loop.tell(actuator_->ticks());
+    loop.use(actuator_->link());
   }
   const Actuating actuating{actuator_, rendered.voices};
   std::atomic<bool> has_ended{false};

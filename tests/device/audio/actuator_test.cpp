@@ -1,7 +1,9 @@
 // The actuator's samples: when they are heard, where they end, and on which channel.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <random>
+#include <thread>
 
 #include "core/techniques/actuated.hpp"
 #include "core/techniques/technique.hpp"
@@ -74,6 +76,13 @@ class InStep {
   }
   void feel(std::uint8_t alternative) { alternative_ = alternative; }
   void end() { source_.use({}); }
+  void end_in_order() {
+    core::ActuatorTick last = core::actuator_tick({});
+    last.at_ns = now_ns_;
+    last.is_last = true;
+    source_.ticks().try_push(last);
+  }
+  bool is_done() { return source_.is_done(); }
   static constexpr std::int64_t buffered_ns = 2'000'000;
   static constexpr std::int64_t impact_ns_ = 10 * tick_ns;
   std::int64_t now_ns_{0};
@@ -137,6 +146,32 @@ TEST_CASE("where the haptic loop stalls the actuator is silent within five milli
   CHECK(heard_ns - static_cast<double>(stalled_ns) <= 5e6 + 1e9 / card_hz);
   both.let_pass(5, true);  // it goes on
   CHECK(both.samples_.back() != 0.0F);
+}
+
+TEST_CASE(
+    "what a loop that ends in order told before its end is heard as if it went on, then silence "
+    "within five milliseconds of the first tick that does not come",
+    "[device][actuator]") {
+  const int ticks = GENERATE(11, 12, 13, 14, 15, 40);  // the impact is the tenth from zero
+  InStep goes_on;
+  goes_on.let_pass(ticks + 20, true);
+  InStep ends;
+  ends.let_pass(ticks, true);
+  const auto heard_by_ns = [](std::int64_t ns) {
+    return static_cast<std::size_t>((ns - InStep::buffered_ns) / tick_ns) * period_frames;
+  };
+  const std::size_t end = heard_by_ns(ends.now_ns_ + static_cast<std::int64_t>(1e9 * delay_s));
+  ends.end_in_order();
+  CHECK_FALSE(ends.is_done());
+  ends.let_pass(20, false);
+  CHECK(ends.is_done());
+  CAPTURE(ticks);
+  CHECK(std::equal(ends.samples_.begin(), ends.samples_.begin() + static_cast<long>(end),
+                   goes_on.samples_.begin()));
+  CHECK(std::ranges::any_of(std::span{ends.samples_}.first(end),
+                            [](float sample) { return sample != 0.0F; }));
+  CHECK(std::ranges::all_of(std::span{ends.samples_}.subspan(end + period_frames),
+                            [](float sample) { return sample == 0.0F; }));
 }
 
 TEST_CASE("a waveform that is cut off by another one, or by nothing, makes no step",
@@ -204,6 +239,30 @@ TEST_CASE("the rate of a card is found in times that jitter, and its periods' be
   CHECK(clock.frame_ns() == Approx(1e9 / card_hz).epsilon(2e-4));
 }
 
+TEST_CASE("a card that tells its time in whole periods has a clock all the same",
+          "[device][actuator]") {
+  device::SampleClock clock{card_hz, period_frames};
+  double worst_ns = 0.0;
+  for (int i = 0; i < 20'000; ++i) {
+    clock.measured(i * 1e6 + (i % 3 == 0 ? 1e6 : 0.0));  // late by a third of a period on average
+    if (i > 10'000) {
+      worst_ns = std::max(worst_ns, std::abs(clock.first_frame_ns() - (i + 1.0 / 3.0) * 1e6));
+    }
+  }
+  CHECK(worst_ns < 2e4);
+  CHECK(clock.jitter_s() == Approx(1e-3 * std::sqrt(2.0) / 3.0).epsilon(0.05));
+}
+
+TEST_CASE("a gap that a card reports begins its time anew", "[device][actuator]") {
+  device::SampleClock clock{card_hz, period_frames};
+  for (int i = 0; i < 100; ++i) {
+    clock.measured(i * 1e6);
+  }
+  clock.restart();
+  clock.measured(100.7e6);
+  CHECK(clock.first_frame_ns() == 100.7e6);
+}
+
 TEST_CASE("a gap in a card's time is followed at once", "[device][actuator]") {
   device::SampleClock clock{card_hz, period_frames};
   for (int i = 0; i < 100; ++i) {
@@ -233,35 +292,91 @@ TEST_CASE("one channel of a card plays, the others are silent", "[device][actuat
 }
 
 namespace {
-// Takes every period until it is gone.
-class FailingSink final : public device::PcmSink {
+// Plays, and from the script's begin on has one of its outcomes a period, the latest on and on.
+class FallibleCard final : public device::PcmSink {
  public:
-  explicit FailingSink(int good_periods) : left_{good_periods} {}
+  explicit FallibleCard(std::vector<device::PcmOutcome> outcomes)
+      : outcomes_{std::move(outcomes)} {}
   double rate_hz() const override { return ::card_hz; }
   std::size_t period_frames() const override { return ::period_frames; }
   std::size_t buffer_frames() const override { return 3 * ::period_frames; }
   void begin() noexcept override {}
-  device::PcmOutcome write(std::span<const float> /*period*/) noexcept override {
-    return left_-- > 0 ? device::PcmOutcome::played : device::PcmOutcome::gone;
+  device::PcmOutcome write(std::span<const float> period) noexcept override {
+    has_sounded = has_sounded || std::ranges::any_of(period, [](float x) { return x != 0.0F; });
+    return has_begun ? outcomes_.at(std::min(periods.fetch_add(1), outcomes_.size() - 1))
+                     : device::PcmOutcome::played;
   }
   void end() noexcept override {}
   std::string failure() const override { return "it was pulled out"; }
+  std::atomic<bool> has_begun{false};
+  std::atomic<std::size_t> periods{0};  // since then
+  std::atomic<bool> has_sounded{false};
 
  private:
-  int left_;
+  std::vector<device::PcmOutcome> outcomes_;
+};
+
+// A player of a card that behaves so.
+struct PlayedVoices {
+  PlayedVoices(std::vector<device::PcmOutcome> outcomes, int max_gaps) {
+    auto owned = std::make_unique<FallibleCard>(std::move(outcomes));
+    sink = owned.get();
+    player.emplace(std::move(owned),
+                   device::ActuatorPlayer::Settings{
+                       full_scale_n, {}, 1e-9 * tick_ns, max_gaps, {0, false, std::nullopt}});
+    player->begin(voices);
+    sink->has_begun = true;
+  }
+  void wait_for_period(std::size_t number) const {
+    while (sink->periods < number) {
+      std::this_thread::yield();
+    }
+  }
+  std::vector<core::ActuatorVoice> voices{voice()};
+  FallibleCard* sink{};
+  mutable std::optional<device::ActuatorPlayer> player;
 };
 }  // namespace
 
 TEST_CASE("an actuator's card that is pulled out is lost for good, and says why",
           "[device][actuator][threads]") {
-  device::ActuatorPlayer player{std::make_unique<FailingSink>(5),
-                                {full_scale_n, {}, 1e-9 * tick_ns, {0, false, std::nullopt}}};
-  CHECK(player.delay_s() == Approx(0.004));
-  while (!player.loss()) {
+  using enum device::PcmOutcome;
+  PlayedVoices card{{played, gone}, 3};
+  CHECK(card.player->delay_s() == Approx(0.004));
+  while (!card.player->loss()) {
     std::this_thread::yield();
   }
-  CHECK(player.loss()->why == "it was pulled out");
-  std::vector<core::ActuatorVoice> voices{voice()};
-  player.begin(voices);
-  CHECK(player.end().loss);
+  CHECK(card.player->loss()->why == "it was pulled out");
+  CHECK(card.player->link().fault->load() == core::TickFault::actuator_lost);
+  card.player->begin(card.voices);
+  CHECK(card.player->link().fault->load() == core::TickFault::actuator_lost);
+  CHECK(card.player->end().loss);
+}
+
+TEST_CASE("a card with more gaps in a trial than are tolerated is a fault of that trial",
+          "[device][actuator][threads]") {
+  using enum device::PcmOutcome;
+  const int max_gaps = GENERATE(0, 3, 4);
+  PlayedVoices card{{underrun, lost, underrun, underrun, played}, max_gaps};
+  card.wait_for_period(8);
+  const core::TickFault fault = card.player->link().fault->load();
+  CHECK(fault == (max_gaps < 4 ? core::TickFault::actuator_gaps : core::TickFault::none));
+  CHECK(card.player->end().underruns == 4);
+  card.player->begin(card.voices);  // the next trial
+  CHECK(card.player->link().fault->load() == core::TickFault::none);
+}
+
+TEST_CASE("a trial's end waits until its last impact has been given to the card",
+          "[device][actuator][threads]") {
+  PlayedVoices card{{device::PcmOutcome::played}, 3};
+  const std::int64_t now_ns =
+      std::chrono::nanoseconds{std::chrono::steady_clock::now().time_since_epoch()}.count();
+  core::SpscRing<core::ActuatorTick>& ticks = *card.player->link().ticks;
+  ticks.try_push(touching(now_ns, true));
+  core::ActuatorTick last = core::actuator_tick({});
+  last.at_ns = now_ns + tick_ns;
+  last.is_last = true;
+  ticks.try_push(last);
+  card.player->end();
+  CHECK(card.sink->has_sounded);
 }

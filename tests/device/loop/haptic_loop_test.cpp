@@ -202,6 +202,38 @@ TEST_CASE("the loop ends at zero force, whatever ended it", "[device][loop][safe
   CHECK(bench.hand.last_force_n == Vec3::Zero());
 }
 
+TEST_CASE(
+    "a fault of the actuator is one of the loop, and only a loop in order tells it of its end",
+    "[device][loop][actuator][safety]") {
+  Bench bench;
+  device::HapticLoop loop = bench.loop();
+  core::SpscRing<core::ActuatorTick> told{64};
+  std::atomic<core::TickFault> fault{core::TickFault::none};
+  loop.use({&told, &fault});
+  loop.run_ticks(5);
+  const bool has_failed = GENERATE(false, true);
+  fault = has_failed ? core::TickFault::actuator_gaps : core::TickFault::none;
+  std::stop_source stop;
+  if (has_failed) {
+    loop.run_ticks(1);
+    CHECK(bench.hand.last_force_n == Vec3::Zero());
+    CHECK(bench.hand.emergency_stops == 1);
+  }
+  stop.request_stop();
+  loop.run(stop.get_token());
+  CHECK(loop.report().stopped_by == fault);
+  std::vector<core::ActuatorTick> ticks(1);
+  while (told.try_pop(ticks.back())) {
+    ticks.push_back({});
+  }
+  ticks.pop_back();
+  REQUIRE(ticks.size() >= 5);
+  CHECK(ticks.back().is_last == !has_failed);
+  CHECK(
+      std::ranges::none_of(std::span{ticks}.first(ticks.size() - 1), &core::ActuatorTick::is_last));
+  CHECK(ticks.back().at_ns - ticks.at(ticks.size() - 2).at_ns == 1'000'000);
+}
+
 TEST_CASE("a tick with a fault is stored with what was read, not with zeros", "[device][loop]") {
   Bench bench;
   SECTION("the hand left the workspace") {

@@ -66,6 +66,26 @@ TEST_CASE("one slow reply of a device is no verdict, many are", "[runner][rig]")
   CHECK(runner::verdict_of(diagnosis).holds == holds);
 }
 
+TEST_CASE("a card with gaps, or too little in reserve, is told to be no actuator's",
+          "[runner][rig][actuator]") {
+  const auto [periods, late, gaps, holds, said] = GENERATE(table<int, int, int, bool, const char*>(
+      {{10'000, 0, 0, true, "; it keeps the actuator's card filled, under load too"},
+       {10'000, 0, 1, false, "; it cannot keep the actuator's card filled, even with nothing"},
+       {10'000, 40, 0, false, "; it cannot keep the actuator's card filled, even with nothing"},
+       {100, 0, 0, true, "; 100 periods are too few to tell"}}));
+  device::ProbedCard card{.rate_hz = 48'000.0, .period_s = 0.001, .buffer_s = 0.003, .gaps = gaps};
+  for (int i = 0; i < periods; ++i) {
+    card.lateness.add(i < late ? 3 * period / 2 : period / 100);
+  }
+  Diagnosis diagnosis = measured(10'000, 0);
+  diagnosis.actuator = runner::DiagnosedCard{card, card};
+  const runner::Verdict verdict = runner::verdict_of(diagnosis);
+  CHECK(verdict.holds == holds);
+  CHECK_THAT(verdict.words, Contains(said));
+  diagnosis.idle = probed(5000, 20);  // the loop comes first
+  CHECK_THAT(runner::verdict_of(diagnosis).words, !Contains("actuator"));
+}
+
 TEST_CASE("doctor names the command that mends what it finds", "[runner][rig]") {
   const std::string cpu = "sys/devices/system/cpu/";
   CHECK_THAT(fact("governor", cpu + "cpu0/cpufreq/scaling_governor", "powersave"),

@@ -7,13 +7,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "device/hand/prescribed_hand.hpp"
 #include "protocols/reader/read_protocol.hpp"
 #include "results/store/store.hpp"
 #include "results/store/study_queries.hpp"
+#include "runner/session/devices/rigs.hpp"
 #include "runner/session/engine/between_trials.hpp"
 #include "runner/session/engine/remaining_trials.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/session/engine/session_states.hpp"
+#include "runner/session/engine/trial_record.hpp"
+#include "runner/session/trial_loop/live_trial_loop.hpp"
 #include "runner/terminal/process_exit.hpp"
 #include "support/catch.hpp"
 #include "support/no_real_plates.hpp"
@@ -250,6 +254,8 @@ TEST_CASE(
                                                                        {velocity_wrong, false},
                                                                        {periods_missed, false},
                                                                        {too_late, false},
+                                                                       {actuator_gaps, false},
+                                                                       {actuator_lost, false},
                                                                        {amplifier_off, false}}));
   CAPTURE(core::to_text(fault));
   Study study{0};
@@ -662,4 +668,68 @@ TEST_CASE("an answer may be changed until it is confirmed, and counts only once 
   CHECK_FALSE(may_follow(SessionState::answering, SessionState::saved));
   CHECK_FALSE(may_follow(SessionState::confirmed, SessionState::answering));
   CHECK_FALSE(may_follow(SessionState::confirmed, SessionState::timed_out));
+}
+
+namespace {
+// Each period comes after its buffer has run empty.
+class GappyCard final : public device::PcmSink {
+ public:
+  double rate_hz() const override { return 48'000.0; }
+  std::size_t period_frames() const override { return 48; }
+  std::size_t buffer_frames() const override { return 144; }
+  void begin() noexcept override {}
+  device::PcmOutcome write(std::span<const float> /*period*/) noexcept override {
+    return device::PcmOutcome::underrun;
+  }
+  void end() noexcept override {}
+  std::string failure() const override { return ""; }
+};
+
+// Explores for as long as the loop runs, and has no answer.
+class Exploring final : public runner::Participant {
+ public:
+  std::optional<std::string> perform(const runner::TrialPrompt& /*prompt*/,
+                                     runner::TrialControl& control) override {
+    constexpr double longer_than_any_fault_takes_s = 10.0;
+    control.pass_time(longer_than_any_fault_takes_s);
+    return std::nullopt;
+  }
+};
+}  // namespace
+
+TEST_CASE("a card that goes on having gaps ends the trial, which is stored as interrupted",
+          "[runner][session][threads][actuator]") {
+  Study study{0};
+  device::ActuatorPlayer player{
+      std::make_unique<GappyCard>(),
+      device::ActuatorPlayer::Settings{1.0, {}, 1e-3, 3, {0, false, std::nullopt}}};
+  device::ReplayHand hand{{{{0.0, 0.1, 0.0}, core::Vec3::Zero()}}, "nowhere"};
+  std::set<int> done;
+  std::optional<runner::Interruption> interruption;
+  {
+    results::Recorder recorder{study.store};
+    runner::LiveTrialLoop loop{hand,
+                               runner::loop_settings(study.protocol, runner::simulated_rig()),
+                               {0, false, std::nullopt},
+                               recorder};
+    loop.use(player);
+    runner::SessionStates states{study.session.id, [] { return 0.0; }};
+    runner::Operator nobody;
+    testing::NoRealPlates no_plates;
+    Exploring participant;
+    runner::TrialEngine engine{
+        {study.protocol, study.models, loop, no_plates, participant, nobody, states}, recorder};
+    interruption = engine.run(study.schedule, done);
+  }
+  REQUIRE(interruption);
+  CHECK(interruption->fault == core::TickFault::actuator_gaps);
+  CHECK_THAT(runner::to_text(*interruption), Contains("actuator.max_gaps"));
+  CHECK(done.empty());
+  auto stored = study.store.query(
+      "SELECT status, fault, value FROM trial JOIN tick_statistics USING (trial_id) "
+      "JOIN event USING (trial_id) WHERE kind = 'actuator_underrun'");
+  REQUIRE(stored.step());
+  CHECK(stored.text(0) == "interrupted");
+  CHECK(stored.text(1) == core::to_text(core::TickFault::actuator_gaps));
+  CHECK(stored.real(2) >= 4.0);
 }

@@ -7,8 +7,6 @@
 #include "device/loop/realtime.hpp"
 namespace tapstudy::device {
 namespace {
-constexpr double fastest_card = 1.002;  // against this machine's clock
-
 std::int64_t now_ns() noexcept {
   return std::chrono::nanoseconds{std::chrono::steady_clock::now().time_since_epoch()}.count();
 }

@@ -5,6 +5,8 @@
 
 #include "device/audio/pcm.hpp"
 namespace tapstudy::device {
+inline constexpr double fastest_card = 1.002;  // against this machine's clock
+
 // Keeps a thread from spinning where a card takes whatever it is given, as ALSA's null does:
 // nothing is played more than a buffer ahead of a clock that runs so many times as fast as the
 // machine's.

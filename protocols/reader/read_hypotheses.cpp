@@ -190,6 +190,18 @@ void check_bound(MapReader& reader, const Hypothesis& hypothesis, const Block& b
                                           : fmt::format("greater than {}", allowed.low)));
 }
 
+// Of groups one block is compared, else two.
+void check_has_values(MapReader& reader, const Protocol& protocol, const Hypothesis& hypothesis,
+                      const Block& block) {
+  const bool is_of_groups = hypothesis.claim == Claim::groups_differ;
+  if (block.task->claim() != Claim::accuracy_above_chance && !block.adjustment) {
+    reader.reject(is_of_groups ? "block" : "to_block",
+                  "blocks of this task have no value a participant to compare");
+  } else if (!is_of_groups) {
+    check_bound(reader, hypothesis, block, protocol.find_block(hypothesis.other_block));
+  }
+}
+
 // Blocks are compared by what they measure of a participant, also where procedures choose levels.
 void check_fits_task(MapReader& reader, const Protocol& protocol, const Hypothesis& hypothesis,
                      const Block& block) {
@@ -200,14 +212,8 @@ void check_fits_task(MapReader& reader, const Protocol& protocol, const Hypothes
     }
     return;
   }
-  const bool is_of_groups = hypothesis.claim == Claim::groups_differ;
-  if (!hypothesis.other_block.empty() || is_of_groups) {
-    if (claim != Claim::accuracy_above_chance && !block.adjustment) {
-      reader.reject(is_of_groups ? "block" : "to_block",
-                    "blocks of this task have no value a participant to compare");
-    } else if (!is_of_groups) {
-      check_bound(reader, hypothesis, block, protocol.find_block(hypothesis.other_block));
-    }
+  if (!hypothesis.other_block.empty() || hypothesis.claim == Claim::groups_differ) {
+    check_has_values(reader, protocol, hypothesis, block);
     return;
   }
   const bool fits = compares_means(hypothesis.claim)

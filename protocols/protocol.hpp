@@ -281,6 +281,7 @@ struct Hypothesis {
   std::string other_block;           // equivalent: the whole block to this one; threshold_ratio
   double within{};  // equivalent: the largest difference that is none; of thresholds the ratio
   double below{};   // threshold_below: the level that thresholds are expected to lie below
+  std::vector<std::string> groups{};  // groups_differ: these two
 };
 
 // What the pages of a session show. Of the plate its shape, in neutral colour.

@@ -41,7 +41,12 @@ char separator_of(std::string_view header) {
 
 class CsvReader {
  public:
-  explicit CsvReader(std::string file) : file_{std::move(file)} { csv_init(&parser_, strict); }
+  // Of the text of an option: a row without header, in which quotes are characters but around
+  // cells.
+  explicit CsvReader(std::string file, bool is_option = false)
+      : file_{std::move(file)}, is_option_{is_option} {
+    csv_init(&parser_, strict);
+  }
   ~CsvReader() { csv_free(&parser_); }
   CsvReader(const CsvReader&) = delete;
   CsvReader& operator=(const CsvReader&) = delete;
@@ -58,7 +63,7 @@ class CsvReader {
       text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
       ++line_;
       check_characters(line);
-      const bool is_before_rows = !is_inside_row_ && text_.rows.empty();
+      const bool is_before_rows = !is_option_ && !is_inside_row_ && text_.rows.empty();
       if (is_before_rows && line.starts_with('#')) {
         text_.comments.emplace_back(line);
       } else {
@@ -96,7 +101,7 @@ class CsvReader {
       parse(line.substr(0, quote));
       // programs that never quote separate by tabs
       const bool is_character =
-          text_.separator == '\t' && parser_.quoted == 0 && parser_.entry_pos > 0;
+          (is_option_ || text_.separator == '\t') && parser_.quoted == 0 && parser_.entry_pos > 0;
       csv_set_opts(&parser_, is_character ? CSV_STRICT_FINI : strict);
       parse("\"");
       csv_set_opts(&parser_, strict);
@@ -130,6 +135,7 @@ class CsvReader {
 
   static constexpr unsigned char strict = CSV_STRICT | CSV_STRICT_FINI;
   std::string file_;
+  bool is_option_;
   csv_parser parser_{};
   int line_{0};
   bool is_inside_row_{false};
@@ -179,6 +185,11 @@ std::string table_text(std::istream& text, const std::string& file) {
 
 CsvText read_csv(std::istream& text, const std::string& file) {
   return CsvReader{file}.read(table_text(text, file));
+}
+
+std::vector<std::string> cells_of_option(const std::string& text, const std::string& option) {
+  const CsvText csv = CsvReader{option, true}.read(text);
+  return csv.rows.empty() ? std::vector<std::string>{} : csv.rows.front().cells;
 }
 
 std::string csv_cell(const std::string& unguarded) {

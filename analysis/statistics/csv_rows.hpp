@@ -38,6 +38,10 @@ std::string table_text(std::istream& text, const std::string& file);
 // from being run as a formula is no part of it (core/text/spreadsheet_cell.hpp).
 CsvText read_csv(std::istream& text, const std::string& file);
 
+// What commas separate in an option of the command line, which has no header: a comma within a cell
+// is in quotes, and a quote that does not begin a cell is a character. Throws as read_csv().
+std::vector<std::string> cells_of_option(const std::string& text, const std::string& option);
+
 // A cell as a file has it: in quotes if it needs them, guarded if a spreadsheet would run it.
 std::string csv_cell(const std::string& text);
 }  // namespace tapstudy::analysis

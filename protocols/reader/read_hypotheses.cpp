@@ -10,6 +10,7 @@
 
 #include "protocols/axes/axis_range.hpp"
 #include "protocols/reader/read_sections.hpp"
+#include "protocols/schedule/groups.hpp"
 #include "protocols/tasks/task.hpp"
 namespace tapstudy::protocols {
 namespace {
@@ -124,6 +125,20 @@ void read_threshold(MapReader& reader, const std::vector<std::string>& blocks,
   }
 }
 
+void read_groups_compared(MapReader& reader, const Protocol& protocol, const Block* block,
+                          Hypothesis& hypothesis) {
+  std::vector<std::string> names;
+  for (const Group& group : protocol.groups) {
+    if (block == nullptr || does(&group, *block)) {
+      names.push_back(group.name);
+    }
+  }
+  hypothesis.groups = reader.words(
+      {"groups", "two, in which what the block measures of participants is expected to differ"},
+      "group that does the block", names);
+  reader.check_count("groups", hypothesis.groups, 2, 2, "two groups are compared");
+}
+
 // What `within` bounds: a difference of means, or a ratio where values are compared by ratios.
 struct BoundedValue {
   std::string name;
@@ -175,6 +190,18 @@ void check_bound(MapReader& reader, const Hypothesis& hypothesis, const Block& b
                                           : fmt::format("greater than {}", allowed.low)));
 }
 
+// Of groups one block is compared, else two.
+void check_has_values(MapReader& reader, const Protocol& protocol, const Hypothesis& hypothesis,
+                      const Block& block) {
+  const bool is_of_groups = hypothesis.claim == Claim::groups_differ;
+  if (block.task->claim() != Claim::accuracy_above_chance && !block.adjustment) {
+    reader.reject(is_of_groups ? "block" : "to_block",
+                  "blocks of this task have no value a participant to compare");
+  } else if (!is_of_groups) {
+    check_bound(reader, hypothesis, block, protocol.find_block(hypothesis.other_block));
+  }
+}
+
 // Blocks are compared by what they measure of a participant, also where procedures choose levels.
 void check_fits_task(MapReader& reader, const Protocol& protocol, const Hypothesis& hypothesis,
                      const Block& block) {
@@ -185,12 +212,8 @@ void check_fits_task(MapReader& reader, const Protocol& protocol, const Hypothes
     }
     return;
   }
-  if (!hypothesis.other_block.empty()) {
-    if (claim != Claim::accuracy_above_chance && !block.adjustment) {
-      reader.reject("to_block", "blocks of this task have no value a participant to compare");
-    } else {
-      check_bound(reader, hypothesis, block, protocol.find_block(hypothesis.other_block));
-    }
+  if (!hypothesis.other_block.empty() || hypothesis.claim == Claim::groups_differ) {
+    check_has_values(reader, protocol, hypothesis, block);
     return;
   }
   const bool fits = compares_means(hypothesis.claim)
@@ -220,14 +243,16 @@ void read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
        "ratings depend on one another) and equivalent (two stimuli, or two blocks, differ by no "
        "more than a bound) for tasks with right answers and rating; threshold_ratio (two blocks' "
        "thresholds differ) and threshold_below (they lie below a level) for blocks with "
-       "procedures"},
+       "procedures; groups_differ (in what a block measures of a participant) for tasks with right "
+       "answers and adjustment"},
       {{"accuracy_above_chance", Claim::accuracy_above_chance},
        {"chosen_above_chance", Claim::chosen_above_chance},
        {"rated_highest", Claim::rated_highest},
        {"interaction", Claim::interaction},
        {"equivalent", Claim::equivalent},
        {"threshold_ratio", Claim::threshold_ratio},
-       {"threshold_below", Claim::threshold_below}});
+       {"threshold_below", Claim::threshold_below},
+       {"groups_differ", Claim::groups_differ}});
   const Block* const found = protocol.find_block(hypothesis.block);
   const Block* const block = found != nullptr && found->task != nullptr ? found : nullptr;
   if (hypothesis.claim == Claim::interaction) {
@@ -236,6 +261,8 @@ void read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
     read_equivalence(reader, protocol, blocks, block, hypothesis);
   } else if (is_of_thresholds(hypothesis.claim)) {
     read_threshold(reader, blocks, hypothesis);
+  } else if (hypothesis.claim == Claim::groups_differ) {
+    read_groups_compared(reader, protocol, block, hypothesis);
   } else if (hypothesis.claim != Claim::accuracy_above_chance) {
     // of another claim there is no stimulus to ask for; a schema's block has no name
     const bool fits =

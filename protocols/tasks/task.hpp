@@ -26,7 +26,8 @@ enum class Claim {
   interaction,
   equivalent,
   threshold_ratio,
-  threshold_below
+  threshold_below,
+  groups_differ
 };
 
 // One of the things that can be felt in a trial.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/report/confusion/chance_tests.hpp"
@@ -307,11 +308,19 @@ void warn_of_block_order(const protocols::Protocol& protocol, int participants) 
   if (protocol.block_order.order != protocols::Order::listed) {
     return;
   }
-  std::map<const protocols::Task*, int> blocks_of;
-  for (const protocols::Block& block : protocol.blocks) {
-    blocks_of[block.task] += block.is_practice || !block.mixed_with.empty() ? 0 : 1;
-  }
-  if (std::ranges::any_of(blocks_of, [](const auto& task) { return task.second > 1; })) {
+  // blocks exchange their places within a session, of those who do both
+  const auto is_fixed = [](const protocols::Block& block) {
+    return block.is_practice || block.is_fixed || !block.mixed_with.empty();
+  };
+  const bool are_confounded =
+      std::ranges::any_of(protocols::groups_of(protocol), [&](const protocols::Group* const group) {
+        std::set<std::pair<const protocols::Task*, std::string>> known;
+        return std::ranges::any_of(protocol.blocks, [&](const protocols::Block& block) {
+          return protocols::does(group, block) && !is_fixed(block) &&
+                 !known.emplace(block.task, block.session).second;
+        });
+      });
+  if (are_confounded) {
     fmt::print(
         "  note: blocks come in the file's order for every participant: what distinguishes two of "
         "one task is confounded with practice and fatigue (block_order: {{order: williams}} "
@@ -435,10 +444,10 @@ void print_languages(const protocols::Protocol& protocol) {
   for (const std::string& language : all) {
     const auto missing = texts_without(language, protocol.translations);
     fmt::print("  {}: {}\n", language,
-               missing.empty() ? "complete" : fmt::format("lacks {}", fmt::join(missing, ", ")));
-  }
-  if (in_one > 0) {
-    fmt::print("  texts given once for all of them: {}\n", in_one);
+               !missing.empty() ? fmt::format("lacks {}", fmt::join(missing, ", "))
+               : in_one == 0    ? "complete"
+                                : fmt::format("all but {} given once for all languages",
+                                              counted(static_cast<std::size_t>(in_one), "text")));
   }
 }
 }  // namespace

@@ -107,13 +107,6 @@ Summary summary_of_directories(const ReportOptions& options,
   return summary_of_stores(options, {whole.path()}, only);
 }
 
-// Splits the text as a row of a table: a comma within an answer is in quotes.
-std::vector<std::string> split_row(const std::string& words, const std::string& option) {
-  std::istringstream stream{words};
-  const analysis::CsvText csv = analysis::read_csv(stream, option);
-  return csv.rows.empty() ? std::vector<std::string>{} : csv.rows.front().cells;
-}
-
 void write_files(const ReportOptions& options, const Summary& summary, Progress& progress) {
   const auto figure_files = analysis::figure_files(summary);
   const core::CountHook count = progress.count();
@@ -169,8 +162,8 @@ bool reads_columns(const ReportOptions& options) {
 
 TableOptions table_options(const ReportOptions& options) {
   TableOptions table = options.table;
-  table.responses = split_row(options.responses, "--responses");
-  table.order = split_row(options.order, "--order");
+  table.responses = analysis::cells_of_option(options.responses, "--responses");
+  table.order = analysis::cells_of_option(options.order, "--order");
   if (!options.time_unit.empty()) {
     table.columns.time_unit_s = options.time_unit == "ms" ? 1e-3 : 1.0;
   }
@@ -198,7 +191,7 @@ Summary summary_of_comparison(const ReportOptions& options) {
 }
 
 Summary summary_of(const ReportOptions& options) {
-  const std::vector<std::string> only = split_row(options.only, "--only");
+  const std::vector<std::string> only = analysis::cells_of_option(options.only, "--only");
   if (is_of_server(options)) {
     return summary_of_server(options, only);
   }

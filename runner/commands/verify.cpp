@@ -44,6 +44,7 @@ PublishedReport published_report(const std::string& directory, results::Store& s
 
 namespace {
 using analysis::MixedModelRow;
+using namespace nlohmann::literals;
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
@@ -80,6 +81,41 @@ ordered_json block_named(const ordered_json& report, const ordered_json& name) {
   return {};
 }
 
+// False for a report of parts of the study (--only).
+bool is_whole(const ordered_json& published, const ordered_json& anew) {
+  const auto names_of = [](const ordered_json& report) {
+    std::vector<std::string> names;
+    for (const auto& [key, value] : report.items()) {
+      names.push_back(key);
+    }
+    const ordered_json of_study = report.value("study", ordered_json::object());
+    for (const auto& [key, value] : of_study.items()) {
+      names.push_back(key);
+    }
+    for (const ordered_json& block : report.at("blocks")) {
+      names.push_back(block.value("block", ordered_json{}).dump());
+    }
+    return names;
+  };
+  return names_of(published) == names_of(anew);
+}
+
+// Sections of the study share one list of remarks: without those of sections that were left out.
+ordered_json with_remarks_of(const ordered_json& published, ordered_json anew) {
+  const auto path = "/study/remarks"_json_pointer;
+  if (published.contains(path) && anew.contains(path) && !is_whole(published, anew)) {
+    const ordered_json& said = published.at(path);
+    ordered_json kept = ordered_json::array();
+    for (const ordered_json& remark : anew.at(path)) {
+      if (std::ranges::find(said, remark) != said.end()) {
+        kept.push_back(remark);
+      }
+    }
+    anew.at(path) = std::move(kept);
+  }
+  return anew;
+}
+
 void compare_reports(const ordered_json& published, const ordered_json& anew,
                      std::vector<std::string>& differences) {
   for (const ordered_json& block : published.at("blocks")) {
@@ -92,21 +128,6 @@ void compare_reports(const ordered_json& published, const ordered_json& anew,
               differences);
     }
   }
-}
-
-// False for a report of parts of the study (--only).
-bool is_whole(const ordered_json& published, const ordered_json& anew) {
-  const auto names_of = [](const ordered_json& report) {
-    std::vector<std::string> names;
-    for (const auto& [key, value] : report.items()) {
-      names.push_back(key);
-    }
-    for (const ordered_json& block : report.at("blocks")) {
-      names.push_back(block.value("block", ordered_json{}).dump());
-    }
-    return names;
-  };
-  return names_of(published) == names_of(anew);
 }
 
 ordered_json json_of(const analysis::Summary& summary) {
@@ -290,7 +311,7 @@ PublishedReport published_report(const std::string& study_directory, results::St
     found.not_compared = "it was made of fewer participants than there are now";
     return found;
   }
-  compare_reports(published, anew, found.differences);
+  compare_reports(published, with_remarks_of(published, anew), found.differences);
   compare_tables(directory, summary, found.differences);
   compare_figures(directory, summary, found.differences);
   if (is_whole(published, anew)) {

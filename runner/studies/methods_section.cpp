@@ -166,14 +166,25 @@ CitingText describe_order(const Block& block, const Protocol& protocol,
   return "";
 }
 
+bool have_own_blocks(const std::vector<GroupMembers>& groups, const Protocol& protocol) {
+  return std::ranges::any_of(groups, [&](const GroupMembers& members) {
+    return !std::ranges::all_of(
+        protocol.blocks, [&](const Block& block) { return protocols::does(members.group, block); });
+  });
+}
+
 // "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
 // blocks: their descriptions.
 CitingText describe_sequence(const Protocol& protocol, const std::string& who,
                              const std::vector<CitingText>& blocks,
                              const std::vector<GroupMembers>& groups) {
   const protocols::BlockOrder& order = protocol.block_order;
+  const CitingText done = have_own_blocks(groups, protocol)
+                              ? citing("Each group did its own of these blocks, in this order: {}",
+                                       core::joined(blocks, "; "))
+                              : citing("{} did {}", who, core::joined(blocks, ", then "));
   if (order.order == protocols::Order::listed) {
-    return citing("{} did {}. ", who, core::joined(blocks, ", then "));
+    return citing("{}. ", done);
   }
   const auto order_of = [&](int order_index) {
     return protocols::block_sequence(protocol, 0, order_index);
@@ -183,8 +194,8 @@ CitingText describe_sequence(const Protocol& protocol, const std::string& who,
     return dealt_orders(protocols::balanced_block_orders(protocol, members.group), members,
                         order_of);
   });
-  return citing("{} did {}, where '{}' exchanged their places among participants{}. ", who,
-                core::joined(blocks, ", then "), fmt::join(order.blocks, "', '"),
+  return citing("{}, where '{}' exchanged their places among participants{}. ", done,
+                fmt::join(order.blocks, "', '"),
                 order.order == protocols::Order::shuffle ? CitingText{", in random order"}
                                                          : describe_williams_orders(dealt));
 }

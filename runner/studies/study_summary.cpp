@@ -164,16 +164,28 @@ analysis::Vote vote_of(const protocols::Block& block) {
   return block.vote == protocols::Vote::first ? analysis::Vote::first : analysis::Vote::majority;
 }
 
-void add_hypothesis(const protocols::Hypothesis& hypothesis, analysis::BlockDesign& part) {
+std::vector<std::string> labels_of(const std::vector<std::string>& groups,
+                                   const protocols::Protocol& protocol) {
+  std::vector<std::string> labels;
+  std::ranges::transform(groups, std::back_inserter(labels), [&](const std::string& name) {
+    return std::ranges::find(protocol.groups, name, &protocols::Group::name)->label;
+  });
+  return labels;
+}
+
+void add_hypothesis(const protocols::Hypothesis& hypothesis, const protocols::Protocol& protocol,
+                    analysis::BlockDesign& part) {
   const analysis::PlannedHypothesis planned{hypothesis.name, hypothesis.statement,
                                             hypothesis.stimulus};
   using enum protocols::Claim;
   if (hypothesis.claim == interaction || hypothesis.claim == equivalent ||
-      hypothesis.claim == threshold_ratio || hypothesis.claim == threshold_below) {
+      hypothesis.claim == threshold_ratio || hypothesis.claim == threshold_below ||
+      hypothesis.claim == groups_differ) {
     part.comparisons.push_back(
         {planned, hypothesis.factors, hypothesis.other_stimulus, hypothesis.other_block,
          hypothesis.within,
-         hypothesis.claim == threshold_below ? std::optional{hypothesis.below} : std::nullopt});
+         hypothesis.claim == threshold_below ? std::optional{hypothesis.below} : std::nullopt,
+         labels_of(hypothesis.groups, protocol)});
   } else {
     part.hypotheses.push_back(planned);
   }
@@ -212,7 +224,7 @@ analysis::StudyDesign design_of(const protocols::Protocol& protocol, results::Mo
     }
     for (const protocols::Hypothesis& hypothesis : protocol.hypotheses) {
       if (hypothesis.block == block.name) {
-        add_hypothesis(hypothesis, part);
+        add_hypothesis(hypothesis, protocol, part);
       }
     }
     design.blocks.push_back(part);
@@ -730,6 +742,7 @@ Summary summary_of_study(const std::vector<StudyStore>& stores, Mode mode, Detai
         all.excluded.empty() ? "" : fmt::format(" ({} excluded)", all.excluded.size()))};
   }
   analysis::StudyDesign design = design_of(protocol, mode);
+  design.groups = participant_groups(protocol, all.sessions);
   if (detail == Detail::main_results) {
     for (analysis::BlockDesign& block : design.blocks) {
       block.is_for_main_results = true;

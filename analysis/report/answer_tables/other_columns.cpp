@@ -326,6 +326,41 @@ void check_has_each_row_once(const FileAnswers& of) {
   }
 }
 
+// Whether each value of the column has the same answers to the same stimuli in the same order.
+// Wrong answers recur so by no chance.
+bool repeats_answers(const FileAnswers& of, const OtherColumn& column) {
+  constexpr int fewest_wrong = 3;
+  const int each = column.kinds.begin()->second;
+  if (column.kinds.size() < 2 ||
+      !std::ranges::all_of(column.kinds, [&](const auto& kind) { return kind.second == each; })) {
+    return false;
+  }
+  std::map<std::string_view, std::vector<std::array<std::string_view, 3>>> answers;
+  for (std::size_t i = 0; i < column.cells.size(); ++i) {
+    answers[column.cells[i]].push_back({of.participants[i], of.stimuli[i], of.responses[i]});
+  }
+  const auto& first = answers.begin()->second;
+  return std::ranges::count_if(first, [](const auto& one) { return one[1] != one[2]; }) >=
+             fewest_wrong &&
+         std::ranges::all_of(answers, [&](const auto& one) { return one.second == first; });
+}
+
+// As where columns were put below one another, where tables were joined, or where a program notes
+// an answer with its screen and with its trial.
+void check_has_answers_once(const FileAnswers& of) {
+  for (const OtherColumn& column : of.columns) {
+    if (!repeats_answers(of, column)) {
+      continue;
+    }
+    ask(*of.origins.front(),
+        fmt::format(
+            "the same answers stand {0} times, once for each value of {1}, as where columns "
+            "were put below one another or tables were joined: keep one of them (--where "
+            "'{2}={3}'), or count all by --pool-runs",
+            column.kinds.size(), column.description, column.name, column.kinds.begin()->first));
+  }
+}
+
 bool are_numbers(const FileAnswers& of, const OtherColumn& column) {
   return std::ranges::all_of(column.kinds, [&](const auto& kind) {
     return of.origins.front()->csv->text.number(std::string{kind.first}).has_value();
@@ -390,6 +425,7 @@ void check_other_columns(const std::vector<OtherColumns>& files,
       check_column(of, column, reading, are_participants_known);
     }
     if (has_runs_alone) {
+      check_has_answers_once(of);
       check_has_each_trial_once(of);
       check_has_each_row_once(of);
     }

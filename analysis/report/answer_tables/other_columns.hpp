@@ -9,7 +9,8 @@ namespace tapstudy::analysis {
 // - two values of which one stands at one answer to each stimulus, as if these were right, and at
 //   others than the names say; for each stimulus an answer that is not its name;
 // - where participants are not known, few values, each in many rows one after the other;
-// - trials of one participant with the same number, or rows that are the same to the letter;
+// - the same answers once for each value; trials of one participant with the same number, or rows
+// that are the same to the letter;
 // - a text at the first few answers of every participant, and never later: as practice has it.
 void check_other_columns(const std::vector<OtherColumns>& files,
                          const std::vector<results::AnswerRow>& answers,

@@ -109,7 +109,11 @@ ReportTable pooled_table(const VariedAxis& axis, const ThresholdResults& results
             {std::pow(10.0, of->interval.low), std::pow(10.0, of->interval.high)},
             of->standard_deviation};
   }
-  return mean_table("pooled", "Over participants: geometric mean of the likeliest thresholds",
+  return mean_table("pooled",
+                    results.leaves_out_people()
+                        ? "Over participants with a threshold alone, which biases it: geometric "
+                          "mean of the likeliest thresholds"
+                        : "Over participants: geometric mean of the likeliest thresholds",
                     column("SD of log10 thresholds", "sd_log10"), axis, mean);
 }
 
@@ -297,9 +301,15 @@ ReportTable false_alarm_table(const ThresholdResults& results) {
 
 std::vector<ReportTable> threshold_tables(const BlockDesign& design,
                                           const ThresholdResults& results) {
+  // the first is the block's result where the second leaves somebody out
+  std::vector<ReportTable> over{pooled_table(*design.axis, results),
+                                population_table(design, results)};
+  if (results.leaves_out_people()) {
+    std::ranges::reverse(over);
+  }
   return {participants_table(design, results),
-          pooled_table(*design.axis, results),
-          population_table(design, results),
+          over[0],
+          over[1],
           population_people_table(results),
           fits_table(design, results),
           posteriors_table(results),

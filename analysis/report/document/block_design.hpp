@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct PlannedComparison {
   std::string other_block{};           // … to this block
   double within{};  // the largest difference that is none; of ratios the largest ratio; 0: the
                     // claim is that the blocks differ
-  std::optional<double> below{};  // the claim is that what the block measures lies below this
+  std::optional<double> below{};      // the claim is that what the block measures lies below this
+  std::vector<std::string> groups{};  // the claim is that what it measures of these two differs
 };
 // The choice that counts of a participant who chose several times: the most frequent (of equals the
 // earliest), or the first.
@@ -105,10 +107,16 @@ struct BlockDesign {
   bool is_for_main_results{};
   std::vector<PlannedComparison> comparisons{};  // hypotheses, too
 };
+// Of different people, in the order of the protocol.
+struct ParticipantGroup {
+  std::string label;
+  std::set<std::string> participants;
+};
 struct StudyDesign {
   std::string title;
   std::string notes;
   std::vector<BlockDesign> blocks;  // practice left out
   core::CountHook count{};          // of blocks summarised
+  std::vector<ParticipantGroup> groups{};
 };
 }  // namespace tapstudy::analysis

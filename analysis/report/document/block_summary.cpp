@@ -48,6 +48,20 @@ std::string who_answered(const BlockSummary& block, int participants) {
                      asked, has_end ? "" : ".");
 }
 
+// What few people came to, of whom there may be no interval; "" of more.
+std::string values_of_few(const BlockSummary& block) {
+  constexpr std::size_t most = 3;
+  if (!block.personal || block.personal->by_participant.empty() ||
+      participants_of(*block.personal).size() > most) {
+    return "";
+  }
+  std::vector<std::string> values;
+  for (const auto& [participant, value] : block.personal->by_participant) {
+    values.push_back(fmt::format("{} {}", participant, rounded(value)));
+  }
+  return fmt::format("{}: {}", block.personal->measure, fmt::join(values, ", "));
+}
+
 std::string hypothesis_in_words(const HypothesisResult& result) {
   std::string statement = result.planned.statement;
   if (statement.ends_with('.')) {
@@ -68,7 +82,15 @@ void BlockSummary::write_words_html(std::ostream& out, int participants) const {
   const std::size_t shown = std::min(main_results.size(), most_results);
   std::transform(main_results.begin(), main_results.begin() + static_cast<std::ptrdiff_t>(shown),
                  std::back_inserter(found),
-                 [&](const MainResult& one) { return in_words(one, number_who_answered()); });
+                 [&](MainResult one) {  // of how many the sentence before has said
+                   one.people = one.of_whom.empty() && one.people == number_who_answered()
+                                    ? std::nullopt
+                                    : one.people;
+                   return in_words(one, number_who_answered());
+                 });
+  if (const std::string few = values_of_few(*this); found.empty() && !few.empty()) {
+    found.push_back(few);
+  }
   if (!found.empty()) {
     char& first = found.front().front();
     first = static_cast<char>(std::toupper(static_cast<unsigned char>(first)));

@@ -171,6 +171,32 @@ void add_means(const BlockSummary& block, const std::vector<GroupValues>& values
 }
 }  // namespace
 
+HypothesisResult compare_groups(const PlannedComparison& planned, const BlockSummary& block,
+                                const std::vector<ParticipantGroup>& groups) {
+  std::vector<GroupValues> values;
+  for (const ParticipantGroup& group : groups) {
+    if (block.personal && std::ranges::find(planned.groups, group.label) != planned.groups.end()) {
+      values.push_back(values_of(group, *block.personal));
+    }
+  }
+  const bool are_enough =
+      values.size() == 2 &&
+      std::ranges::all_of(values, [](const GroupValues& one) { return one.all.size() > 1; });
+  if (!are_enough) {
+    return {planned.hypothesis, "fewer than two participants of a group have values", {}, 0.0, {}};
+  }
+  const GroupContrast result = contrast_of(block, values[0], values[1]).result;
+  return {planned.hypothesis,
+          fmt::format("permutation test of participants between groups, two-sided; {} against {}",
+                      in_words(values[0]), in_words(values[1])),
+          {},
+          0.0,
+          result.test.p,
+          0.0,
+          {},
+          contrast_in_words(result.difference, result.interval, block.personal->is_ratio)};
+}
+
 std::optional<ReportSection> groups_section(
     const std::vector<std::shared_ptr<const BlockSummary>>& blocks,
     const std::vector<ParticipantGroup>& groups) {

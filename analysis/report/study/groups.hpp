@@ -1,19 +1,12 @@
 #pragma once
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "analysis/report/document/block_summary.hpp"
 #include "analysis/report/document/sections.hpp"
 namespace tapstudy::analysis {
-// Of different people, in the order of the protocol.
-struct ParticipantGroup {
-  std::string label;
-  std::set<std::string> participants;
-};
-
 // What each group's participants came to in every block that more than one group did, and the
 // groups against one another: group_contrast of participants' values, of logarithms for ratios;
 // where some lie beyond what was presented, the test of gehan_scores. Adjusted by Holm 1979 for all
@@ -21,4 +14,8 @@ struct ParticipantGroup {
 std::optional<ReportSection> groups_section(
     const std::vector<std::shared_ptr<const BlockSummary>>& blocks,
     const std::vector<ParticipantGroup>& groups);
+
+// The same contrast of two groups, of those in `groups`, that was declared before the study.
+HypothesisResult compare_groups(const PlannedComparison& planned, const BlockSummary& block,
+                                const std::vector<ParticipantGroup>& groups);
 }  // namespace tapstudy::analysis

@@ -10,6 +10,7 @@
 
 #include "analysis/report/comparison.hpp"
 #include "analysis/report/document/wording.hpp"
+#include "analysis/report/study/groups.hpp"
 #include "analysis/statistics/population/planned_contrasts.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
@@ -227,24 +228,27 @@ HypothesisResult interaction_of_factors(const PlannedComparison& planned, const 
   return result;
 }
 
+using Blocks = std::vector<std::shared_ptr<BlockSummary>>;
+
+std::optional<PersonalValues> values_of(const std::string& name, const Blocks& blocks) {
+  const auto found =
+      std::ranges::find_if(blocks, [&](const auto& block) { return block->block == name; });
+  return found == blocks.end() ? std::nullopt : (*found)->personal;
+}
+
 HypothesisResult result_of(const PlannedComparison& planned, const BlockDesign& design,
-                           const std::vector<AnswerRow>& answers,
-                           const std::vector<std::shared_ptr<BlockSummary>>& blocks) {
-  const auto personal = [&](const std::string& name) -> std::optional<PersonalValues> {
-    const auto found =
-        std::ranges::find_if(blocks, [&](const auto& block) { return block->block == name; });
-    return found == blocks.end() ? std::nullopt : (*found)->personal;
-  };
+                           const std::vector<AnswerRow>& answers, const Blocks& blocks) {
   try {
     if (!design.premise.empty()) {
       return not_tested(planned, design.premise);
     }
     if (planned.below) {
-      return below_level(planned, personal(design.name));
+      return below_level(planned, values_of(design.name, blocks));
     }
     if (!planned.other_block.empty()) {
       const auto compare = planned.within > 0.0 ? equivalent_blocks : different_blocks;
-      return compare(planned, personal(design.name), personal(planned.other_block));
+      return compare(planned, values_of(design.name, blocks),
+                     values_of(planned.other_block, blocks));
     }
     const MeansByStimulus means = means_by_stimulus(answers);
     return planned.factors.empty() ? equivalent_stimuli(planned, means)
@@ -258,7 +262,7 @@ HypothesisResult result_of(const PlannedComparison& planned, const BlockDesign& 
 
 void add_planned_comparisons(const StudyDesign& design,
                              const std::map<std::string, std::vector<AnswerRow>>& answers,
-                             const std::vector<std::shared_ptr<BlockSummary>>& blocks) {
+                             const Blocks& blocks) {
   for (const BlockDesign& block : design.blocks) {
     const auto own = answers.find(block.name);
     const auto summary = std::ranges::find_if(blocks, [&](const auto& each) {
@@ -268,7 +272,10 @@ void add_planned_comparisons(const StudyDesign& design,
       continue;
     }
     for (const PlannedComparison& planned : block.comparisons) {
-      (*summary)->hypotheses.push_back(result_of(planned, block, own->second, blocks));
+      const bool is_of_groups = !planned.groups.empty() && block.premise.empty();
+      (*summary)->hypotheses.push_back(is_of_groups
+                                           ? compare_groups(planned, **summary, design.groups)
+                                           : result_of(planned, block, own->second, blocks));
     }
   }
 }

@@ -18,7 +18,33 @@ std::string answer_to_equivalence(const std::string& keys) {
   }
   return "accepted";
 }
+
+std::string answer_to_groups(const std::string& keys) {
+  const std::string file = testing::source("tests/data/every_key.yaml");
+  const std::string usual = "block: material, claim: groups_differ, groups: [trained, all_blocks]";
+  try {
+    protocols::parse_protocol(testing::replaced(testing::contents(file), usual, keys), file);
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
 }  // namespace
+
+TEST_CASE("two groups are compared in a block that both do and that has values of participants",
+          "[protocols][hypotheses]") {
+  const auto [keys, said] = GENERATE(table<std::string, std::string>(
+      {{"block: material, claim: groups_differ, groups: [all_blocks, trained]", "accepted"},
+       {"block: stiffness, claim: groups_differ, groups: [all_blocks, trained]", "accepted"},
+       {"block: abx, claim: groups_differ, groups: [all_blocks, trained]",
+        "'trained' is not a known group that does the block (one of: all_blocks"},
+       {"block: material, claim: groups_differ, groups: [trained]", "two groups are compared"},
+       {"block: material, claim: groups_differ", "groups: is missing"},
+       {"block: material, claim: groups_differ, groups: [trained, all_blocks], stimulus: a",
+        "stimulus"},
+       {"block: practice, claim: groups_differ, groups: [trained, all_blocks]", "is practice"}}));
+  CHECK_THAT(answer_to_groups(keys), Contains(said));
+}
 
 TEST_CASE("an equivalence within a bound that no difference can exceed is refused",
           "[protocols][hypotheses]") {

@@ -93,9 +93,11 @@ TEST_CASE("a protocol that is read as the same says the same, however it is writ
 // "01" and "1" are two names, and what is drawn depends on the order of those of stimuli.
 TEST_CASE("names are as they are written, and in their order", "[protocols][texts]") {
   const auto with = [](const std::string& group) {
-    return testing::replaced(every_key_text(), "name: trained", "name: " + group);
+    return testing::replaced(testing::replaced(every_key_text(), "name: trained", "name: " + group),
+                             "groups: [trained,", "groups: [" + group + ",");
   };
-  CHECK(changes(with("01"), with("1")).data_keys == testing::Names{"groups[0].name"});
+  CHECK(changes(with("01"), with("1")).data_keys ==
+        testing::Names{"groups[0].name", "hypotheses[5].groups[0]"});
   CHECK(changes(with("01"), with("'01'")).data_keys == testing::Names{});
   const std::string oak =
       "  oak:\n    youngs_modulus_pa: 1.0e10\n    density_kg_per_m3: 700\n"

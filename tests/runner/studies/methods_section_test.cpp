@@ -61,3 +61,28 @@ TEST_CASE("methods call an order balanced exactly if it was over those who are r
   }
   CHECK(balanced == 4);
 }
+
+TEST_CASE("methods say of no participant that they did the blocks of another group",
+          "[runner][report][groups]") {
+  const bool are_own = GENERATE(true, false);
+  const std::string groups = are_own ? "groups: [{name: g1, blocks: [one, test]}, "
+                                       "{name: g2, blocks: [two, test]}]\n"
+                                     : "groups: [{name: g1}, {name: g2}]\n";
+  const protocols::Protocol protocol = testing::with_blocks({"one", "two", "test"}, groups);
+  std::vector<results::SessionRow> sessions(2);
+  for (const int i : {0, 1}) {
+    sessions.at(i).participant_id = i == 0 ? "P1" : "P2";
+    sessions.at(i).group = {.name = i == 0 ? "g1" : "g2"};
+  }
+  const std::set<std::string> both{"P1", "P2"};
+  const std::set<std::string> first = are_own ? std::set<std::string>{"P1"} : both;
+  const std::set<std::string> second = are_own ? std::set<std::string>{"P2"} : both;
+  const std::string text = runner::describe_procedure(protocol, sessions, both,
+                                                      {{"one", {.participants = first}},
+                                                       {"two", {.participants = second}},
+                                                       {"test", {.participants = both}}})
+                               .words;
+  INFO(text);
+  CHECK((text.find(", then 'two'") != std::string::npos) == !are_own);
+  CHECK((text.find("Each group did its own of these blocks") != std::string::npos) == are_own);
+}

@@ -721,6 +721,16 @@ TEST_CASE("between tabs a quote that does not begin a cell is a character",
   CHECK_THROWS_WITH(csv_of("stimulus,response\na,5\" thick\n"), Contains("out of place"));
 }
 
+TEST_CASE("an answer in an option may have quotes, a semicolon or begin with a hash",
+          "[analysis][answer_tables]") {
+  using Cells = std::vector<std::string>;
+  CHECK(cells_of_option("a=<img src=\"o.png\">,b; c,\"d, e\"", "--responses") ==
+        Cells{"a=<img src=\"o.png\">", "b; c", "d, e"});
+  CHECK(cells_of_option("#1=oak,#2=ash", "--responses") == Cells{"#1=oak", "#2=ash"});
+  CHECK(cells_of_option("", "--responses").empty());
+  CHECK_THROWS_WITH(cells_of_option("\"a,b", "--responses"), Contains("--responses:1: a quote"));
+}
+
 TEST_CASE("lines that E-Prime and Gorilla add are told and left out, and every row keeps its line",
           "[analysis][answer_tables]") {
   const std::string rows = "Subject\tstimulus\tresponse\n1\ta\ta\n";

@@ -132,6 +132,32 @@ TEST_CASE("rows that are the same to the letter, time included, are asked about"
   CHECK_THAT(outcome_of(twice, keys()), Contains("is the same to the letter as line "));
 }
 
+TEST_CASE("answers that stand once for each value of a column are asked about",
+          "[analysis][answer_tables]") {
+  const std::string text = table_with("zork", [](const Trial&) { return "time"; });
+  std::string below = text;  // as R's rbind() has it
+  std::string melted;        // as pivot_longer() has it
+  std::istringstream rows{text};
+  for (std::string row; std::getline(rows, row);) {
+    const std::string other = row.substr(0, row.rfind(',')) + ",confidence\n";
+    below += melted.empty() ? "" : other;
+    melted += melted.empty() ? row + "\n" : row + "\n" + other;
+  }
+  AnswerReading one = keys();
+  for (const std::string& table : {below, melted}) {
+    CHECK_THAT(outcome_of(table, keys()),
+               Contains("stand 2 times, once for each value of column 'zork'") &&
+                   Contains("--where 'zork=confidence'"));
+    one.conditions = {{"zork", "confidence", false}};
+    CHECK(outcome_of(table, one) == "accepted");
+  }
+  AnswerReading pooled = keys();
+  pooled.pools_runs = true;
+  CHECK(outcome_of(below, pooled) == "accepted");
+  const auto half = [](const Trial& trial) { return trial.number % 24 < 12 ? "x" : "y"; };
+  CHECK(outcome_of(table_with("block", half), keys()) == "accepted");
+}
+
 TEST_CASE("dates of any column, and sessions of any spelling, tell runs apart",
           "[analysis][answer_tables]") {
   const auto [name, first, second] = GENERATE(table<std::string, std::string, std::string>(

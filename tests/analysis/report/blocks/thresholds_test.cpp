@@ -275,6 +275,8 @@ TEST_CASE("where somebody has no threshold the block's result is of the fit of a
   CHECK(result_of(answers) == population["threshold"].get<double>());
   CHECK(formats.json["population_participants"].size() == 4);
   const auto whole = summarise_thresholds(design_of(), {answers, {}});
+  const std::string page = formats.html;  // what is read first is the block's result
+  CHECK(page.find("one fit of all of them") < page.find("with a threshold alone, which biases it"));
   CHECK_THAT(in_words(whole->main_results.at(0), whole->number_who_answered()),
              Contains(", of 4 participants, 1 of them without a threshold of their own"));
   const Chart& overview = whole->results().charts.at(0);

@@ -221,6 +221,31 @@ TEST_CASE("every format of a report has the same tables, and each of them rows o
   }
 }
 
+TEST_CASE("of so few that there is no interval the head has each one's value",
+          "[analysis][identification]") {
+  const BlockDesign design = drawn(four_plates(), 2);
+  for (const int people : {1, 2, 3}) {
+    CAPTURE(people);
+    std::vector<results::AnswerRow> answers = answers_of(design, people, 2, 0.5, 4);
+    for (results::AnswerRow& answer : answers) {  // of eight trials 6 right, then 5, then 4
+      const bool is_right = answer.place_in_block < 6 - answer.participant_index;
+      answer.response = is_right                       ? answer.stimulus
+                        : answer.stimulus == "mdf_two" ? "mdf_three"
+                                                       : "mdf_two";
+      answer.is_correct = is_right;
+    }
+    Summary summary;
+    summary.participants = people;
+    summary.blocks = {find_statistic(statistic).summarise(design, {answers, {}})};
+    std::ostringstream out;
+    write_html(out, summary);
+    const bool has_values =
+        out.str().find(people == 1 ? "Share of right answers, chance 0.25: P01 0.75."
+                                   : ": P01 0.75, P02 0.625.") != std::string::npos;
+    CHECK(has_values == (people < 3));
+  }
+}
+
 TEST_CASE("a page has its results in words first, methods before details, links to all of them",
           "[analysis][identification]") {
   const BlockDesign design = drawn(four_plates(), 3);
@@ -233,13 +258,14 @@ TEST_CASE("a page has its results in words first, methods before details, links 
   const std::string page = out.str();
   std::vector<std::size_t> places;
   for (const char* const part :
-       {"6 participants answered", "Accuracy ", ", chance 25&nbsp;%), of 6 participants",
-        "class=contents", "class=matrix", "<h2 id=methods>", "<details class=section>"}) {
+       {"6 participants answered", "Accuracy ", ", chance 25&nbsp;%).", "class=contents",
+        "class=matrix", "<h2 id=methods>", "<details class=section>"}) {
     CAPTURE(part);
     places.push_back(page.find(part, page.find("</style>")));
     CHECK(places.back() != std::string::npos);
   }
   CHECK(std::ranges::is_sorted(places));
+  CHECK_THAT(page, !Contains(", of 6 participants"));
   const std::regex link{"href=\"#([^\"]+)\""};
   std::size_t links = 0;
   for (auto at = std::sregex_iterator{page.begin(), page.end(), link}; at != std::sregex_iterator{};

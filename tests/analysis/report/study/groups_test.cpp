@@ -87,6 +87,22 @@ TEST_CASE("who lies beyond the levels is in the test of groups, and no mean is m
   CHECK(value(rows[0][7]) == Approx(0.1));  // all of one group above all of the other, either way
 }
 
+TEST_CASE("a declared contrast of two groups is theirs in the table, in no other's place",
+          "[analysis][report][groups]") {
+  Blocks blocks;
+  add(blocks, "test", {"share", false, shares});
+  const std::vector<ParticipantGroup> three{groups[0], {"between", {"U4"}}, groups[1]};
+  PlannedComparison planned;
+  planned.groups = {"untrained", "trained"};
+  const HypothesisResult result = compare_groups(planned, *blocks[0], three);
+  const auto section = groups_section(blocks, groups);
+  CHECK(result.p == value(section->tables[1].rows[0][7]));
+  CHECK_THAT(result.finding, Contains("mean difference 0.469, 95 % CI "));  // .875 - .40625
+  CHECK_THAT(result.test, Contains("trained (3 participants) against untrained (4 participants)"));
+  planned.groups = {"between", "trained"};
+  CHECK_FALSE(compare_groups(planned, *blocks[0], three).p);
+}
+
 TEST_CASE("without two groups in a block nothing is compared", "[analysis][report][groups]") {
   Blocks blocks;
   add(blocks, "training", {"share", false, {{"T1", 0.5}, {"T2", 0.5}}});

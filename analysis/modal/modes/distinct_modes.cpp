@@ -65,12 +65,10 @@ std::vector<TapMode> beyond(const Band& part, const TapModes& tap, double later)
 // inside its bandwidth. 0 where that is too short to tell.
 double amplitude_at_rest(const RepeatedMode& mode, const FreeDecay& rest) {
   constexpr double around = 1.5;
-  const Eigen::VectorXd about_mean = (rest.samples.array() - rest.samples.mean()).matrix();
   const double centre_hz = centre_of(mode);
   try {
-    const BandSpectrum spectrum =
-        band_spectrum({rest.rate_hz, about_mean},
-                      {centre_hz / around, std::min(0.47 * rest.rate_hz, around * centre_hz)});
+    const BandSpectrum spectrum = band_spectrum(
+        about_mean(rest), {centre_hz / around, std::min(0.47 * rest.rate_hz, around * centre_hz)});
     const double within_hz =
         std::max(bandwidth_hz(mode), spectrum.rate_hz / static_cast<double>(spectrum.length));
     const Eigen::ArrayXd hz = spectrum.rate_hz / (2.0 * std::numbers::pi) * spectrum.rad_per_sample;

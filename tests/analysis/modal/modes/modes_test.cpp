@@ -392,7 +392,11 @@ std::vector<RepeatedMode> listed(FaultyTaps taps, const std::vector<FreeDecay>& 
 TEST_CASE("a mode that follows its amplitude is one mode, at rest, whatever else is recorded",
           "[analysis][modal]") {
   Faults faults;
+  bool has_rest = true;
   SECTION("with faults of a usual recording") {}
+  SECTION("in recordings that begin with the blow") {
+    has_rest = false;
+  }
   SECTION("with twice as large ones") {
     faults = {0.008, 0.04, 0.08, 0.02, 0.24};
   }
@@ -401,9 +405,14 @@ TEST_CASE("a mode that follows its amplitude is one mode, at rest, whatever else
   std::vector<FreeDecay> rests;
   for (int tap = 0; tap < 6; ++tap) {
     decays.push_back(faulty_tap(faults, 0.45 + 0.1 * tap, rng));
-    rests.push_back(faulty_tap(faults, 0.0, rng));
+    const FreeDecay rest = faulty_tap(faults, 0.0, rng);
+    rests.push_back(has_rest ? rest : FreeDecay{rest.rate_hz, {}});
   }
-  const std::vector<RepeatedMode> modes = listed(identified(std::move(decays)), rests);
+  std::vector<RepeatedMode> modes = listed(identified(std::move(decays)), rests);
+  // what moves slowly at rest, too, is known by the rest alone
+  std::erase_if(modes, [&](const RepeatedMode& mode) {
+    return !has_rest && mode.frequency_hz.value < 0.5 * gliding_hz;
+  });
   for (const RepeatedMode& mode : modes) {
     UNSCOPED_INFO(mode.frequency_hz.value << " Hz, " << mode.damping_ratio.value << " "
                                           << mode.why);

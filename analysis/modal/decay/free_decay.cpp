@@ -71,6 +71,13 @@ FreeDecay decimated(const FreeDecay& decay, double high_hz) {
   return result;
 }
 
+FreeDecay about_mean(const FreeDecay& decay) {
+  if (decay.samples.size() == 0) {
+    return decay;
+  }
+  return {decay.rate_hz, (decay.samples.array() - decay.samples.mean()).matrix()};
+}
+
 Eigen::MatrixXd stacked(const Eigen::MatrixXcd& values) {
   Eigen::MatrixXd all{2 * values.rows(), values.cols()};
   all << values.real(), values.imag();

@@ -39,6 +39,9 @@ Pole pole_of(const std::complex<double>& log_z, double rate_hz);
 // exponential multiplies it by a constant. The decay itself where the rate is low enough.
 FreeDecay decimated(const FreeDecay& decay, double high_hz);
 
+// The samples less their mean; nothing of nothing, as before a recording's first blow.
+FreeDecay about_mean(const FreeDecay& decay);
+
 // The discrete Fourier transform at the bins inside a band, of the longest part of the decay, from
 // its beginning, whose length has no prime factor above 5.
 struct BandSpectrum {

@@ -24,6 +24,7 @@ constexpr double most_reach = 0.15;
 constexpr double around_reach = 1.5;
 constexpr double least_bins = 24.0;
 constexpr double explains_as_much = 1.05;  // of the noise
+constexpr double most_times_damped = 5.0;  // at a tap, by joints
 constexpr std::array<int, 5> numbers_of_terms{1, 2, 3, 4, 6};
 
 double centre_of(const RepeatedMode& mode) {
@@ -65,12 +66,10 @@ std::vector<TapMode> beyond(const Band& part, const TapModes& tap, double later)
 // inside its bandwidth. 0 where that is too short to tell.
 double amplitude_at_rest(const RepeatedMode& mode, const FreeDecay& rest) {
   constexpr double around = 1.5;
-  const Eigen::VectorXd about_mean = (rest.samples.array() - rest.samples.mean()).matrix();
   const double centre_hz = centre_of(mode);
   try {
-    const BandSpectrum spectrum =
-        band_spectrum({rest.rate_hz, about_mean},
-                      {centre_hz / around, std::min(0.47 * rest.rate_hz, around * centre_hz)});
+    const BandSpectrum spectrum = band_spectrum(
+        about_mean(rest), {centre_hz / around, std::min(0.47 * rest.rate_hz, around * centre_hz)});
     const double within_hz =
         std::max(bandwidth_hz(mode), spectrum.rate_hz / static_cast<double>(spectrum.length));
     const Eigen::ArrayXd hz = spectrum.rate_hz / (2.0 * std::numbers::pi) * spectrum.rad_per_sample;
@@ -179,14 +178,17 @@ class Neighbourhood {
     return at_rest.empty() || explained > times_rest * quantile(at_rest, 0.5);
   }
 
-  // At a tap, too, a mode loses energy; what follows its amplitude does so alike in most taps; and
-  // what is at rest is known if it falls by e within a decay.
+  // At a tap, too, a mode loses energy, though not many times as fast as at rest: that is the blow;
+  // what follows its amplitude does so alike in most taps; and what is at rest is known if it falls
+  // by e within a decay.
   bool is_free_decay(const RestingFit& fit) const {
     const Pole& rest = fit.poles.front().pole;
     const BandSpectrum& first = decays_.front().spectrum;
     const double fall = 2.0 * std::numbers::pi * rest.frequency_hz * rest.damping_ratio *
                         static_cast<double>(first.length) / first.rate_hz;
-    return fall >= 1.0 && at_taps(fit).damping_ratio > 0.0 &&
+    const double ratio_at_taps = at_taps(fit).damping_ratio;
+    return fall >= 1.0 && ratio_at_taps > 0.0 &&
+           ratio_at_taps <= most_times_damped * rest.damping_ratio &&
            (most_move_alike(fit, &Pole::frequency_hz, rest.frequency_hz) ||
             most_move_alike(fit, &Pole::damping_ratio, rest.damping_ratio));
   }

@@ -174,9 +174,8 @@ constexpr double as_strong = 0.5;
 constexpr double highest_hum_hz = 200.0;
 
 double amplitude_in(const Band& band, const FreeDecay& rest) {
-  const Eigen::VectorXd about_mean = (rest.samples.array() - rest.samples.mean()).matrix();
   try {
-    const BandSpectrum spectrum = band_spectrum({rest.rate_hz, about_mean}, band);
+    const BandSpectrum spectrum = band_spectrum(about_mean(rest), band);
     return 2.0 * spectrum.values.norm() / static_cast<double>(spectrum.length);
   } catch (const core::InvalidInput&) {
     return 0.0;  // too short to tell

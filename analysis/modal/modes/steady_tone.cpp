@@ -69,10 +69,6 @@ bool is_long_enough(const FreeDecay& stretch, double near_hz) {
   return stretch.duration_s() >= shortest_stretch_s &&
          stretch.duration_s() * near_hz >= fewest_periods;
 }
-
-FreeDecay about_mean(const FreeDecay& stretch) {
-  return {stretch.rate_hz, (stretch.samples.array() - stretch.samples.mean()).matrix()};
-}
 }  // namespace
 
 std::optional<SteadyTone> steady_tone(const FreeDecay& stretch, double near_hz, double reach_hz) {

@@ -26,6 +26,7 @@ constexpr double neighbourhood = 0.1;  // of the frequency
 constexpr double same_line = 0.01;
 constexpr int further_pairs = 4;
 constexpr double mains_tolerance = 0.004;
+constexpr double highest_harmonic = 25.0;  // every frequency is near a multiple above
 
 struct Candidate {
   Pole pole;
@@ -165,8 +166,9 @@ std::string hum_at(const FittedMode& mode) {
   for (const double mains_hz : std::array{50.0, 60.0}) {
     const double harmonic = std::round(mode.pole.frequency_hz / mains_hz);
     const double distance = std::abs(mode.pole.frequency_hz - harmonic * mains_hz);
-    if (harmonic >= 1.0 && distance <= std::max(mains_tolerance * mode.pole.frequency_hz,
-                                                4.0 * mode.frequency_error_hz)) {
+    if (harmonic >= 1.0 && harmonic <= highest_harmonic &&
+        distance <=
+            std::max(mains_tolerance * mode.pole.frequency_hz, 4.0 * mode.frequency_error_hz)) {
       return harmonic == 1.0
                  ? fmt::format("{:.0f} Hz hum of the mains", mains_hz)
                  : fmt::format("hum of the mains, {:.0f} times {:.0f} Hz", harmonic, mains_hz);

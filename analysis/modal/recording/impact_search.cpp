@@ -57,10 +57,12 @@ std::vector<double> innovation_energies(const std::vector<double>& samples, doub
   }
   const Eigen::VectorXd backward = prediction_of(means).reverse();
   std::vector<int> counts(frames, 0);
-  for (Eigen::Index i = order; i < means.size(); ++i) {
+  for (Eigen::Index i = 0; i < means.size(); ++i) {
     const std::size_t of = static_cast<std::size_t>(i) * factor / frame;
     if (of < frames) {
-      const double error = means[i] - backward.dot(means.segment(i - order, order));
+      const double foretold =
+          i < order ? 0.0 : backward.dot(means.segment(i - order, order));  // nothing came before
+      const double error = means[i] - foretold;
       energies[of] += error * error;
       ++counts[of];
     }
@@ -84,28 +86,35 @@ std::size_t frame_of(double rate_hz) {
   return std::max(min_frame, samples_in(frame_s, rate_hz));
 }
 
-double Energies::of_group(std::size_t first) const {
-  const std::size_t count = std::min(frames_per_group, of_frame.size() - first);
-  const auto begin = of_frame.begin() + static_cast<std::ptrdiff_t>(first);
+namespace {
+double mean_of_group(const std::vector<double>& of_frames, std::size_t first) {
+  const std::size_t count = std::min(frames_per_group, of_frames.size() - first);
+  const auto begin = of_frames.begin() + static_cast<std::ptrdiff_t>(first);
   return std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(count), 0.0) /
          static_cast<double>(count);
+}
+}  // namespace
+
+double Energies::of_group(std::size_t first) const {
+  return mean_of_group(of_frame, first);
 }
 
 namespace {
 constexpr std::size_t fewest_groups = 6;
 
-// Energies of groups of frames, without those at either end in which all samples are the same:
-// editors and triggered recorders pad so, and no sensor was recorded there. But what changes in
-// fewer than six groups, 0.1 s, is a blow in a force window, beside which zeros are the silence.
-std::vector<double> energies_of_groups(const Energies& energies,
-                                       const std::vector<double>& centred) {
+// The 20 % quantile of what groups of frames have, without those at either end in which all samples
+// are the same: editors and triggered recorders pad so, and no sensor was recorded there. But what
+// changes in fewer than six groups, 0.1 s, is a blow in a force window, beside which zeros are the
+// silence.
+double floor_of(const std::vector<double>& of_frames, std::size_t frame,
+                const std::vector<double>& centred) {
   std::vector<double> groups;
   std::size_t first = 0;
   std::size_t last = 0;  // behind the last that changes
-  for (std::size_t i = 0; i < energies.of_frame.size(); i += frames_per_group) {
-    groups.push_back(energies.of_group(i));
-    const auto begin = centred.begin() + static_cast<std::ptrdiff_t>(i * energies.frame);
-    const auto length = static_cast<std::ptrdiff_t>(frames_per_group * energies.frame);
+  for (std::size_t i = 0; i < of_frames.size(); i += frames_per_group) {
+    groups.push_back(mean_of_group(of_frames, i));
+    const auto begin = centred.begin() + static_cast<std::ptrdiff_t>(i * frame);
+    const auto length = static_cast<std::ptrdiff_t>(frames_per_group * frame);
     const auto end = begin + std::min(length, centred.end() - begin);
     if (std::adjacent_find(begin, end, std::not_equal_to<>{}) != end) {
       first = last == 0 ? groups.size() - 1 : first;
@@ -116,12 +125,12 @@ std::vector<double> energies_of_groups(const Energies& energies,
     groups.resize(last);
     groups.erase(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(first));
   }
-  return groups;
+  return quantile(groups, 0.2);
 }
 }  // namespace
 
 Energies energies_of(const std::vector<double>& centred, double rate_hz) {
-  Energies energies{frame_of(rate_hz), {}, {}, 0.0};
+  Energies energies{frame_of(rate_hz), {}, {}, 0.0, 0.0};
   for (std::size_t i = 0; i + energies.frame <= centred.size(); i += energies.frame) {
     double sum = 0.0;
     for (std::size_t k = i; k < i + energies.frame; ++k) {
@@ -131,7 +140,8 @@ Energies energies_of(const std::vector<double>& centred, double rate_hz) {
   }
   energies.innovations = innovation_energies(centred, rate_hz, energies.frame);
   const double loudest = *std::ranges::max_element(energies.of_frame);
-  energies.floor = std::max(quantile(energies_of_groups(energies, centred), 0.2), 1e-12 * loudest);
+  energies.floor = std::max(floor_of(energies.of_frame, energies.frame, centred), 1e-12 * loudest);
+  energies.innovation_floor = floor_of(energies.innovations, energies.frame, centred);
   return energies;
 }
 
@@ -141,7 +151,8 @@ constexpr double onset_ratio = 10.0;
 constexpr double rise_ratio = 2.0;
 constexpr double envelope_s = 0.05;
 constexpr double min_innovation_ratio = 4.0;
-constexpr double blow_ratio = 16.0;  // of a new blow while the last one still rings
+constexpr double small_share = 0.01;  // of the largest innovation
+constexpr double blow_ratio = 16.0;   // of a new blow while the last one still rings
 constexpr std::size_t settled_frames = 6;
 constexpr std::size_t look_back_frames = 125;
 constexpr double one_impact_s = 0.03;
@@ -149,6 +160,14 @@ constexpr double pulse_share = 0.1;  // of the largest force
 constexpr double pulse_over_noise = 6.0;
 constexpr double resting_share = 0.3;  // of where a pulse begins
 constexpr double pulse_pause_s = 0.001;
+
+// The prediction error about a frame.
+double innovation_at(std::size_t frame, const Energies& energies) {
+  const auto begin = energies.innovations.begin();
+  const std::size_t end = std::min(frame + 2, energies.innovations.size());
+  return *std::max_element(begin + static_cast<std::ptrdiff_t>(frame > 0 ? frame - 1 : 0),
+                           begin + static_cast<std::ptrdiff_t>(end));
+}
 
 // The ratio of the prediction error at a frame to that since the last impact, in energy; unset so
 // soon after it that there is nothing to compare with.
@@ -163,17 +182,24 @@ std::optional<double> innovation_ratio(std::size_t frame, std::size_t last_impac
     return energies.innovations.begin() + static_cast<std::ptrdiff_t>(i);
   };
   const std::vector<double> before(at(first), at(frame - 1));
-  const std::size_t end = std::min(frame + 2, energies.innovations.size());
-  const double now = *std::max_element(at(frame - 1), at(end));
-  return now / std::max(quantile(before, 0.8), 1e-300);
+  return innovation_at(frame, energies) / std::max(quantile(before, 0.8), 1e-300);
 }
 
-// Modes that beat, and slow ones, rise again and again while they ring: an impact is also not what
-// the motion before foretells.
+// Errors of the prediction that are hardly larger than the noise's, and small beside those of the
+// hardest impact.
+bool is_foretold(std::size_t frame, const Energies& energies) {
+  const double innovation = innovation_at(frame, energies);
+  return innovation < min_innovation_ratio * energies.innovation_floor ||
+         (innovation < onset_ratio * energies.innovation_floor &&
+          innovation < small_share * *std::ranges::max_element(energies.innovations));
+}
+
+// Modes that beat, and slow ones, rise again and again while they ring, and so does a floor that
+// rocks slowly: an impact is also not what the motion before foretells.
 bool is_impact(std::size_t frame, const std::vector<std::size_t>& impacts, double envelope,
                const Energies& energies) {
   const double energy = energies.of_frame[frame];
-  if (!(energy > onset_ratio * energies.floor)) {
+  if (!(energy > onset_ratio * energies.floor) || is_foretold(frame, energies)) {
     return false;
   }
   const auto unforeseen =

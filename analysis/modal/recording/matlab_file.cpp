@@ -223,11 +223,9 @@ std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
       scalar == arrays.end() ? std::nullopt : std::optional{values_of(file, *scalar, path).front()};
   for (const MatlabArray& array : arrays) {
     if (is_time(array) && array.size() == recording.samples.size()) {
-      const auto rate = rate_of_times(
-          values_of(file, array, path), options, [&](std::size_t) { return path; },
-          recording.remarks);
-      const auto rate_hz =
-          rate ? std::optional{*rate / seconds_per_unit(array.own_name())} : std::nullopt;
+      const auto rate_hz = rate_of_times(
+          values_of(file, array, path), seconds_per_unit(array.own_name()), options,
+          [&](std::size_t) { return path; }, recording.remarks);
       if (rate_hz && of_scalar && scalar->structure() == array.structure()) {
         check_agree(*rate_hz, array.name, *of_scalar, scalar->name, recording, options);
       }

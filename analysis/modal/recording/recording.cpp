@@ -129,8 +129,8 @@ std::optional<double> rate_from_times(const Table& table, const TimeColumn& colu
   const auto place = [&](std::size_t row) {
     return fmt::format("{}:{}", table.file(), table.line(row));
   };
-  const auto rate = rate_of_times(table.values(column.index), options, place, remarks);
-  return rate ? std::optional{*rate / column.seconds_per_unit} : std::nullopt;
+  return rate_of_times(table.values(column.index), column.seconds_per_unit, options, place,
+                       remarks);
 }
 
 // The column with this header or, failing that, this number from 1.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -36,32 +37,52 @@ std::string letters_of(const std::string& name) {
   return letters;
 }
 
-constexpr std::array<std::pair<const char*, double>, 8> units_s{{{"", 1.0},
-                                                                 {"s", 1.0},
-                                                                 {"sec", 1.0},
-                                                                 {"second", 1.0},
-                                                                 {"seconds", 1.0},
-                                                                 {"ms", 1e-3},
-                                                                 {"us", 1e-6},
-                                                                 {"ns", 1e-9}}};
+// Words for a time, and how many seconds one alone is of.
+constexpr std::array<std::pair<const char*, double>, 10> names_s{{{"t", 1.0},
+                                                                  {"time", 1.0},
+                                                                  {"timestamp", 1.0},
+                                                                  {"zeit", 1.0},
+                                                                  {"second", 1.0},
+                                                                  {"seconds", 1.0},
+                                                                  {"millis", 1e-3},
+                                                                  {"milliseconds", 1e-3},
+                                                                  {"micros", 1e-6},
+                                                                  {"microseconds", 1e-6}}};
+constexpr std::array<std::pair<const char*, double>, 11> units_s{{{"s", 1.0},
+                                                                  {"sec", 1.0},
+                                                                  {"second", 1.0},
+                                                                  {"seconds", 1.0},
+                                                                  {"ms", 1e-3},
+                                                                  {"millis", 1e-3},
+                                                                  {"milliseconds", 1e-3},
+                                                                  {"us", 1e-6},
+                                                                  {"micros", 1e-6},
+                                                                  {"microseconds", 1e-6},
+                                                                  {"ns", 1e-9}}};
+
+double seconds_of(const auto& words, const std::string& word) {
+  const auto* const known =
+      std::ranges::find(words, word, [](const auto& one) { return one.first; });
+  return known == words.end() ? 0.0 : known->second;
+}
 }  // namespace
 
 double seconds_per_unit(const std::string& name) {
   std::istringstream stream{letters_of(name)};
-  std::string word;
-  std::string unit;
-  std::string rest;
-  stream >> word >> unit >> rest;
-  if (word == "x" && unit == "value" && rest.empty()) {  // LabVIEW
+  std::vector<std::string> words{std::istream_iterator<std::string>{stream}, {}};
+  if (words == std::vector<std::string>{"x", "value"}) {  // LabVIEW
     return 1.0;
   }
-  constexpr std::array names{"t", "time", "timestamp", "zeit", "second", "seconds"};
-  if (std::ranges::find(names, word) == names.end() || !rest.empty()) {
+  if (words.size() > 1 && words.front() == "elapsed") {
+    words.erase(words.begin());
+  }
+  if (words.size() > 1 && words[0] == "time" && words[1] == "stamp") {
+    words.erase(words.begin() + 1);
+  }
+  if (words.empty() || words.size() > 2 || seconds_of(names_s, words.front()) == 0.0) {
     return 0.0;
   }
-  const auto* const known =
-      std::ranges::find(units_s, unit, [](const auto& one) { return one.first; });
-  return known == units_s.end() ? 0.0 : known->second;
+  return words.size() == 1 ? seconds_of(names_s, words.front()) : seconds_of(units_s, words[1]);
 }
 
 namespace {
@@ -92,12 +113,21 @@ void refuse_times(const std::string& place, const std::string& fault, const std:
 }
 }  // namespace
 
-std::optional<double> rate_of_times(const std::vector<double>& times, const ReadingOptions& options,
+std::optional<double> rate_of_times(const std::vector<double>& times, double seconds_per_unit,
+                                    const ReadingOptions& options,
                                     const std::function<std::string(std::size_t)>& place,
                                     std::vector<std::string>& remarks) {
   const auto [start, period] = uniform_grid(times);
   if (!(period > 0.0)) {
     refuse_times(place(times.size() - 1), "times must ascend", "", options, remarks);
+    return std::nullopt;
+  }
+  constexpr double longest_period_s = 1.0;
+  if (period * seconds_per_unit >= longest_period_s) {
+    refuse_times(place(0), fmt::format("times are {:.4g} s apart", period * seconds_per_unit),
+                 " (if they are no seconds, name them time_ms or time_us; if they are no times, "
+                 "give the rate by --rate HZ --trust-rate)",
+                 options, remarks);
     return std::nullopt;
   }
   double furthest = 0.0;
@@ -121,7 +151,7 @@ std::optional<double> rate_of_times(const std::vector<double>& times, const Read
                  advice, options, remarks);
     return std::nullopt;
   }
-  return 1.0 / period;
+  return 1.0 / (period * seconds_per_unit);
 }
 
 double agreed_rate(std::optional<double> of_file_hz, const ReadingOptions& options,

@@ -7,7 +7,8 @@
 #include "analysis/modal/recording/recording.hpp"
 namespace tapstudy::analysis {
 // Seconds per unit of what a time column or variable is called: "t", "time_us", "Time (ms)",
-// "Zeit [s]", "timestamp_us", "X_Value", "second" ...; 0: that is not the name of a time.
+// "Zeit [s]", "Time Stamp (us)", "millis", "X_Value", "second" ...; 0: that is not the name of a
+// time.
 double seconds_per_unit(const std::string& name);
 // The micro sign and the Greek letter mu as u.
 std::string with_ascii_micro(const std::string& text);
@@ -15,11 +16,12 @@ std::string with_ascii_micro(const std::string& text);
 // Rates that differ by a larger share contradict each other: that is no rounding of times.
 inline constexpr double max_rate_difference = 0.001;
 
-// The rate of the even times nearest to these (least squares) [1 / their unit]. place(i) begins the
-// message about one of them, "file:line" or "file". Unset, with a remark, for times that do not
-// ascend, or are further from a grid than max_jitter_periods, if a rate is given that is to be
-// trusted; otherwise throws InvalidInput for them.
-std::optional<double> rate_of_times(const std::vector<double>& times, const ReadingOptions& options,
+// The rate of the even times nearest to these (least squares) [Hz]. place(i) begins the message
+// about one of them, "file:line" or "file". Unset, with a remark, for times that do not ascend, are
+// 1 s apart or more, or are further from a grid than max_jitter_periods, if a rate is given that is
+// to be trusted; otherwise throws InvalidInput for them.
+std::optional<double> rate_of_times(const std::vector<double>& times, double seconds_per_unit,
+                                    const ReadingOptions& options,
                                     const std::function<std::string(std::size_t)>& place,
                                     std::vector<std::string>& remarks);
 

@@ -20,6 +20,7 @@ constexpr double end_ratio = 2.0;
 constexpr double peak_search_s = 0.01;
 constexpr std::size_t min_decay = 64;
 constexpr double min_decay_s = 0.02;
+constexpr double weaker_than_most = 30.0;
 
 std::size_t end_of_decay(const Energies& energies, std::size_t begin, std::size_t last) {
   for (std::size_t j = begin / energies.frame + 1; j < energies.of_frame.size();
@@ -50,6 +51,16 @@ class TapFinder {
         energies_{energies_of(centred_, recording.rate_hz)},
         rails_{rail_samples(recording.samples, noise_rms())},
         dropped_{dropped_samples(recording.samples, noise_rms())} {}
+
+  // Impacts that this sensor shows: what is far weaker than most of them is none.
+  FoundTaps find_own() {
+    const std::vector<Impact> found = impacts();
+    std::vector<double> peaks;
+    std::ranges::transform(found, std::back_inserter(peaks),
+                           [&](const Impact& impact) { return peak_after(impact); });
+    least_peak_ = quantile(peaks, 0.5) / weaker_than_most;
+    return find(found);
+  }
 
   double noise_rms() const { return std::sqrt(energies_.floor); }
 
@@ -115,6 +126,16 @@ class TapFinder {
            rises * energy_between(*first - std::min(*first, around), *first);
   }
 
+  double peak_after(const Impact& impact) const {
+    double peak = 0.0;
+    const std::size_t end =
+        std::min(centred_.size(), impact.onset + samples_in(peak_search_s, recording_.rate_hz) + 1);
+    for (std::size_t i = impact.onset; i < end; ++i) {
+      peak = std::max(peak, std::abs(centred_[i]));
+    }
+    return peak;
+  }
+
   std::size_t begin_of_decay(const Impact& impact, std::size_t last) {
     const std::size_t onset = impact.last_blow;
     if (onset != impact.onset) {
@@ -149,6 +170,11 @@ class TapFinder {
 
   void add(const Impact& impact, std::size_t next, bool is_followed) {
     const std::size_t onset = impact.onset;
+    if (const double peak = peak_after(impact); peak < least_peak_) {
+      remark(onset, "left out, it is far weaker than most: a click or a step, and no tap",
+             fmt::format("{:.0f} times", least_peak_ * weaker_than_most / peak));
+      return;
+    }
     const std::size_t guard = is_followed ? energies_.frame : 0;
     const std::size_t last = next > onset + guard ? next - guard : onset;
     const std::size_t begin = begin_of_decay(impact, last);
@@ -217,6 +243,7 @@ class TapFinder {
   std::vector<std::size_t> dropped_;
   FoundTaps found_;
   int impact_{0};
+  double least_peak_{0.0};
 };
 }  // namespace
 
@@ -245,7 +272,7 @@ void check_length(const Recording& recording) {
 FoundTaps find_taps(const Recording& recording, const TapFinding& finding) {
   check_length(recording);
   TapFinder finder{recording, finding};
-  return finder.find(finder.impacts());
+  return finder.find_own();
 }
 
 FoundTaps taps_at(const std::vector<Impact>& impacts, const Recording& recording,

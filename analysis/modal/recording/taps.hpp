@@ -39,14 +39,18 @@ struct Impact {
 };
 
 // Energies of frames of 2 ms (8 samples at least) against the noise floor, the 20 % quantile of
-// the energies of ten frames each. An impact exceeds it tenfold, and twice what earlier taps left,
+// the energies of ten frames each. An impact exceeds it tenfold, as the errors of a linear
+// prediction do there, or fourfold where no other impact is a hundred times as hard (a floor that
+// rocks is foretold), and twice what earlier taps left,
 // taken to fall by e in 50 ms at the slowest, and is no continuation of what rang before: a linear
 // prediction errs there four times as much as a quarter of a second before (in energy). Within what
 // still rings louder, only an error sixteen times as large tells a new impact. Two impacts within
 // 30 ms are one. A free decay ends at the next impact, where its energy has fallen to twice the
-// noise floor, or after max_s. It begins after samples at the rails of the sensor (rail_samples),
-// if there are any. Decays below 64 samples or 20 ms are left out with a remark. Throws
-// InvalidInput with the file if none is left, and for speech and music (sustained_sound.hpp).
+// noise floor, or after max_s. A tap whose peak is more than 30 times below that of most taps is
+// left out with a remark: a click, or a step nearby. It begins after samples at the rails of the
+// sensor (rail_samples), if there are any. Decays below 64 samples or 20 ms are left out with a
+// remark. Throws InvalidInput with the file if none is left, and for speech and music
+// (sustained_sound.hpp).
 FoundTaps find_taps(const Recording& recording, const TapFinding& finding);
 // The same where the impacts are known.
 FoundTaps taps_at(const std::vector<Impact>& impacts, const Recording& recording,

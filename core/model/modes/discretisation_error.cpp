@@ -13,7 +13,7 @@ namespace tapstudy::core {
 namespace {
 constexpr Eigen::Index max_beyond = 4;  // modes above the band that are followed, too
 constexpr int rounds_beyond = 3;
-constexpr int max_steps = 30;
+constexpr int max_steps = 100;
 constexpr double settled_share = 0.02;  // of the drop so far
 constexpr double settled = 2e-4;        // of an eigenvalue
 constexpr double independent = 1e-9;    // of a Gram matrix's eigenvalues
@@ -172,6 +172,7 @@ class LargerModes {
                                             inner_products(ritz_.vectors, ritz_.inertial), count());
     values_ = pairs.values;
     first_ = values_;
+    moved_ = Eigen::VectorXd::Zero(values_.size());
     ritz_ = ritz_.times(pairs.vectors);
     moving_.resize(static_cast<std::size_t>(count()));
     std::iota(moving_.begin(), moving_.end(), 0);
@@ -211,14 +212,23 @@ class LargerModes {
     return lowest_in_span(K, M, count());
   }
 
+  // What is left of a drop, if steps go on to shrink as they do: of a material that hardly changes
+  // its volume they are small from the beginning, and many.
+  static double left_after(double moved, double moved_before) {
+    constexpr double slowest = 0.99;
+    const double shrinks = moved_before > 0.0 ? std::min(moved / moved_before, slowest) : 0.0;
+    return std::max(1.0, shrinks / (1.0 - shrinks)) * moved;
+  }
+
   void note_moving(const Eigen::VectorXd& values) {
     moving_.clear();
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       const double moved = values_[i] - values[i];
       const double drop = first_[i] - values[i];
-      if (moved > settled_share * drop + settled * values[i]) {
+      if (left_after(moved, moved_[i]) > settled_share * drop + settled * values[i]) {
         moving_.push_back(i);
       }
+      moved_[i] = moved;
     }
   }
 
@@ -226,6 +236,7 @@ class LargerModes {
   Block direction_;
   Eigen::VectorXd values_;
   Eigen::VectorXd first_;
+  Eigen::VectorXd moved_;  // in the last step
   std::vector<Eigen::Index> moving_;
 };
 }  // namespace

@@ -61,6 +61,10 @@ TEST_CASE("a table of an instrument is a recording whatever stands above its num
       "# time acc\n" + rows_of(" ", 1.0),
       "Zeit [s];acc\n" + with_decimal_commas(rows_of(";", 1.0)),
       "timestamp_us,acc\n" + rows_of(",", 1e6),
+      "Time Stamp (us),acc\n" + rows_of(",", 1e6),
+      "Elapsed Time,acc\n" + rows_of(",", 1.0),
+      "millis,acc\n" + rows_of(",", 1000.0),
+      "Time (milliseconds),acc\n" + rows_of(",", 1000.0),
       "x-axis,1\nsecond,Volt\n" + rows_of(",", 1.0),
       "Time,Acceleration\ns,m/s^2\n" + rows_of(",", 1.0),
       "Run 3\n\nTime\tAcceleration\n(ms)\t(g)\n" + rows_of("\t", 1000.0),
@@ -122,6 +126,8 @@ TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused wit
   check_samples(read_text(dates, given));
   given.column = "1";
   CHECK_THROWS_WITH(read_text(settings, given), Contains("oscilloscope"));
+  CHECK_THROWS_WITH(read_text("t,acc\n" + rows_of(",", 1e6), {}),  // of no unit
+                    Contains("taps.csv:2:") && Contains("500 s apart") && Contains("time_us"));
   given.column = "acc";
   const std::string gap = testing::replaced(
       "t,acc\n" + rows_of(",", 1.0), fmt::format("\n0.002,{:.9g}", sample_at(4)), "\n0.002,nan");

@@ -231,6 +231,47 @@ TEST_CASE("noise and hum hold no tap, in words", "[analysis][recordings]") {
   CHECK_THROWS_WITH(find_taps(recording, {}), Contains("holds no tap"));
 }
 
+TEST_CASE("a floor that rocks slowly makes no taps beside a real one", "[analysis][recordings]") {
+  constexpr double rate_hz = 8000.0;
+  constexpr double rocks_below_hz = 20.0;
+  constexpr double struck_s = 2.9;
+  const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 7));
+  Recording recording =
+      testing::planted_recording({{{513.0, 0.008}, 1.0}}, {struck_s}, rate_hz, 4.0, 0.003, seed);
+  core::Rng rng{seed + 100};
+  const double passes = 2.0 * std::numbers::pi * rocks_below_hz / rate_hz;
+  double once = 0.0;
+  double twice = 0.0;
+  for (double& sample : recording.samples) {
+    once += passes * (rng.normal() - once);
+    twice += passes * (once - twice);
+    sample += 0.5 * twice;  // ten times the sensor's noise
+  }
+  const FoundTaps found = find_taps(recording, {});
+  CHECK(found.impacts == 1);
+  CHECK(static_cast<double>(found.taps.front().onset) / rate_hz == Approx(struck_s).margin(1e-3));
+}
+
+TEST_CASE("what is far weaker than most taps is a click, and left out in words",
+          "[analysis][recordings]") {
+  const std::vector<double> times_s{0.3, 1.0, 1.7, 2.4};
+  Recording recording = testing::planted_recording(plate, times_s, 4000.0, 4.0, 0.0001, 3);
+  constexpr std::size_t click = 12800;
+  const double share = GENERATE(0.02, 0.1);
+  for (std::size_t n = click; n < recording.samples.size(); ++n) {
+    recording.samples[n] +=
+        share * testing::ringing(plate, static_cast<double>(n - click) / 4000.0);
+  }
+  const FoundTaps found = find_taps(recording, {});
+  REQUIRE(found.impacts == 5);
+  CHECK(found.taps.size() == (share < 0.05 ? 4 : 5));
+  const bool is_told = std::ranges::any_of(found.remarks, [](const TapRemark& remark) {
+    return remark.at_s == Approx(3.2).margin(1e-3) &&
+           remark.kind.find("far weaker") != std::string::npos;
+  });
+  CHECK(is_told == (share < 0.05));
+}
+
 TEST_CASE("samples that are all the same before and after the taps change nothing of them",
           "[analysis][recordings]") {
   const Recording recording =

@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "device/audio/actuator_player.hpp"
 #include "device/audio/pace.hpp"
 #include "device/audio/sample_clock.hpp"
 #include "device/loop/realtime.hpp"
@@ -22,7 +23,8 @@ ProbedCard probe_card(PcmSink& sink, double seconds, const CardTime& time) {
   const auto period = static_cast<long>(silence.size());
   ProbedCard probed{.rate_hz = rate_hz,
                     .period_s = static_cast<double>(period) / rate_hz,
-                    .buffer_s = static_cast<double>(buffer) / rate_hz};
+                    .buffer_s = static_cast<double>(buffer) / rate_hz,
+                    .delay_s = actuator_delay_s(sink)};
   SampleClock clock{rate_hz, static_cast<double>(period)};
   PlayedPeriods played;
   long to_fill = buffer;

@@ -13,6 +13,7 @@ struct ProbedCard {
   double rate_hz{};
   double period_s{};
   double buffer_s{};
+  double delay_s{};  // actuator_delay_s
   // Of each period: for how long the card had had room for it. Without those that fill the buffer;
   // empty where the card does not tell what it has played.
   LatenessCount lateness{};

@@ -130,7 +130,7 @@ double floor_of(const std::vector<double>& of_frames, std::size_t frame,
 }  // namespace
 
 Energies energies_of(const std::vector<double>& centred, double rate_hz) {
-  Energies energies{frame_of(rate_hz), {}, {}, 0.0, 0.0};
+  Energies energies{frame_of(rate_hz), {}, {}, 0.0, 0.0, 0.0};
   for (std::size_t i = 0; i + energies.frame <= centred.size(); i += energies.frame) {
     double sum = 0.0;
     for (std::size_t k = i; k < i + energies.frame; ++k) {
@@ -142,6 +142,7 @@ Energies energies_of(const std::vector<double>& centred, double rate_hz) {
   const double loudest = *std::ranges::max_element(energies.of_frame);
   energies.floor = std::max(floor_of(energies.of_frame, energies.frame, centred), 1e-12 * loudest);
   energies.innovation_floor = floor_of(energies.innovations, energies.frame, centred);
+  energies.largest_innovation = *std::ranges::max_element(energies.innovations);
   return energies;
 }
 
@@ -191,7 +192,7 @@ bool is_foretold(std::size_t frame, const Energies& energies) {
   const double innovation = innovation_at(frame, energies);
   return innovation < min_innovation_ratio * energies.innovation_floor ||
          (innovation < onset_ratio * energies.innovation_floor &&
-          innovation < small_share * *std::ranges::max_element(energies.innovations));
+          innovation < small_share * energies.largest_innovation);
 }
 
 // Modes that beat, and slow ones, rise again and again while they ring, and so does a floor that

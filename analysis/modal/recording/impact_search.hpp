@@ -24,6 +24,7 @@ struct Energies {
   std::vector<double> innovations;  // likewise, see innovation_energies
   double floor{};  // the noise's: the 20 % quantile of those of groups, without padding beside it
   double innovation_floor{};  // likewise
+  double largest_innovation{};
 
   double of_group(std::size_t first) const;  // the mean from this frame on
 };

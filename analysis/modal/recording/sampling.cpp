@@ -37,33 +37,35 @@ std::string letters_of(const std::string& name) {
   return letters;
 }
 
-// Words for a time, and how many seconds one alone is of.
-constexpr std::array<std::pair<const char*, double>, 10> names_s{{{"t", 1.0},
-                                                                  {"time", 1.0},
-                                                                  {"timestamp", 1.0},
-                                                                  {"zeit", 1.0},
-                                                                  {"second", 1.0},
-                                                                  {"seconds", 1.0},
-                                                                  {"millis", 1e-3},
-                                                                  {"milliseconds", 1e-3},
-                                                                  {"micros", 1e-6},
-                                                                  {"microseconds", 1e-6}}};
-constexpr std::array<std::pair<const char*, double>, 11> units_s{{{"s", 1.0},
-                                                                  {"sec", 1.0},
-                                                                  {"second", 1.0},
-                                                                  {"seconds", 1.0},
-                                                                  {"ms", 1e-3},
-                                                                  {"millis", 1e-3},
-                                                                  {"milliseconds", 1e-3},
-                                                                  {"us", 1e-6},
-                                                                  {"micros", 1e-6},
-                                                                  {"microseconds", 1e-6},
-                                                                  {"ns", 1e-9}}};
+// What names a column of times, alone in seconds or in the unit that it is, and what may follow it
+// as its unit.
+struct TimeWord {
+  const char* word;
+  double seconds;
+  bool is_name;
+  bool is_unit;
+};
+constexpr std::array<TimeWord, 15> time_words{{{"t", 1.0, true, false},
+                                               {"time", 1.0, true, false},
+                                               {"timestamp", 1.0, true, false},
+                                               {"zeit", 1.0, true, false},
+                                               {"s", 1.0, false, true},
+                                               {"sec", 1.0, false, true},
+                                               {"second", 1.0, true, true},
+                                               {"seconds", 1.0, true, true},
+                                               {"ms", 1e-3, false, true},
+                                               {"millis", 1e-3, true, true},
+                                               {"milliseconds", 1e-3, true, true},
+                                               {"us", 1e-6, false, true},
+                                               {"micros", 1e-6, true, true},
+                                               {"microseconds", 1e-6, true, true},
+                                               {"ns", 1e-9, false, true}}};
 
-double seconds_of(const auto& words, const std::string& word) {
-  const auto* const known =
-      std::ranges::find(words, word, [](const auto& one) { return one.first; });
-  return known == words.end() ? 0.0 : known->second;
+// 0 of another word.
+double seconds_of(const std::string& word, bool TimeWord::*use) {
+  const auto* const known = std::ranges::find_if(
+      time_words, [&](const TimeWord& one) { return one.word == word && one.*use; });
+  return known == time_words.end() ? 0.0 : known->seconds;
 }
 }  // namespace
 
@@ -79,10 +81,11 @@ double seconds_per_unit(const std::string& name) {
   if (words.size() > 1 && words[0] == "time" && words[1] == "stamp") {
     words.erase(words.begin() + 1);
   }
-  if (words.empty() || words.size() > 2 || seconds_of(names_s, words.front()) == 0.0) {
+  const double named_s = words.empty() ? 0.0 : seconds_of(words.front(), &TimeWord::is_name);
+  if (named_s == 0.0 || words.size() > 2) {
     return 0.0;
   }
-  return words.size() == 1 ? seconds_of(names_s, words.front()) : seconds_of(units_s, words[1]);
+  return words.size() == 1 ? named_s : seconds_of(words[1], &TimeWord::is_unit);
 }
 
 namespace {

@@ -40,8 +40,8 @@ struct Impact {
 
 // Energies of frames of 2 ms (8 samples at least) against the noise floor, the 20 % quantile of
 // the energies of ten frames each. An impact exceeds it tenfold, as the errors of a linear
-// prediction do there, or fourfold where no other impact is a hundred times as hard (a floor that
-// rocks is foretold), and twice what earlier taps left,
+// prediction exceed theirs, or fourfold where none is a hundred times as large (the slow motion of
+// a floor is predicted), and twice what earlier taps left,
 // taken to fall by e in 50 ms at the slowest, and is no continuation of what rang before: a linear
 // prediction errs there four times as much as a quarter of a second before (in energy). Within what
 // still rings louder, only an error sixteen times as large tells a new impact. Two impacts within

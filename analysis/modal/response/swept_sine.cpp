@@ -137,6 +137,23 @@ double unwrapped(double phase_rad, double near_rad) {
   const double turn = 2.0 * std::numbers::pi;
   return phase_rad + turn * std::round((near_rad - phase_rad) / turn);
 }
+
+// The response to each sweep at one frequency, against the phase of the command where that is
+// known.
+std::vector<Complex> responses_at(double frequency_hz, const SweptSine& sweep, long place,
+                                  const std::vector<double>& response,
+                                  const std::vector<double>& command) {
+  std::vector<Complex> all;
+  for (int k = 0; k < sweep.repeats; ++k) {
+    const long at = place + k * frames_of_one(sweep);
+    Complex h = at_frequency(response, at, frequency_hz, sweep);
+    if (!command.empty()) {
+      h *= std::polar(1.0, -std::arg(at_frequency(command, at, frequency_hz, sweep)));
+    }
+    all.push_back(h);
+  }
+  return all;
+}
 }  // namespace
 
 std::vector<double> samples_of(const SweptSine& sweep) {
@@ -181,12 +198,7 @@ SweptResponse response_to(const SweptSine& sweep, std::span<const double> record
     const double frequency_hz = sweep.from_hz * std::pow(sweep.to_hz / sweep.from_hz, share);
     Complex sum{};
     double squares = 0.0;
-    for (int k = 0; k < sweep.repeats; ++k) {
-      const long at = place + k * frames_of_one(sweep);
-      Complex h = at_frequency(response, at, frequency_hz, sweep);
-      if (!command.empty()) {
-        h *= std::polar(1.0, -std::arg(at_frequency(command, at, frequency_hz, sweep)));
-      }
+    for (const Complex& h : responses_at(frequency_hz, sweep, place, response, command)) {
       sum += h;
       squares += std::norm(h);
     }

@@ -1,6 +1,5 @@
 #pragma once
 #include <span>
-#include <string>
 #include <vector>
 namespace tapstudy::analysis {
 // An exponential sweep, repeated, with silence after each (Farina 2000, Simultaneous measurement of
@@ -39,7 +38,7 @@ struct SweptResponse {
 // against the largest value of the impulse response, whose delay is unknown. With H_k the response
 // to the sweep k of n, the coherence is |sum H_k|^2 / (n sum |H_k|^2), that of equal excitations
 // (Bendat & Piersol 2010, Random Data, 4th ed., section 6.2); of noise alone it is 1/n on average.
-// Throws InvalidInput if the recording is shorter than the sweeps, or as many are not found in it.
+// Throws InvalidInput if the recording is shorter than the sweeps.
 SweptResponse response_to(const SweptSine& sweep, std::span<const double> recorded,
                           std::span<const double> reference, int points);
 }  // namespace tapstudy::analysis

@@ -10,7 +10,7 @@ namespace tapstudy::analysis {
 //   others than the names say; for each stimulus an answer that is not its name;
 // - where participants are not known, few values, each in many rows one after the other;
 // - the same answers once for each value; trials of one participant with the same number, or rows
-// that are the same to the letter;
+//   that are the same to the letter;
 // - a text at the first few answers of every participant, and never later: as practice has it.
 void check_other_columns(const std::vector<OtherColumns>& files,
                          const std::vector<results::AnswerRow>& answers,

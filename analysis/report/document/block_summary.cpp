@@ -83,9 +83,9 @@ void BlockSummary::write_words_html(std::ostream& out, int participants) const {
   std::transform(main_results.begin(), main_results.begin() + static_cast<std::ptrdiff_t>(shown),
                  std::back_inserter(found),
                  [&](MainResult one) {  // of how many the sentence before has said
-                   one.people = one.of_whom.empty() && one.people == number_who_answered()
-                                    ? std::nullopt
-                                    : one.people;
+                   if (one.of_whom.empty() && one.people == number_who_answered()) {
+                     one.people.reset();
+                   }
                    return in_words(one, number_who_answered());
                  });
   if (const std::string few = values_of_few(*this); found.empty() && !few.empty()) {

@@ -236,24 +236,36 @@ std::optional<PersonalValues> values_of(const std::string& name, const Blocks& b
   return found == blocks.end() ? std::nullopt : (*found)->personal;
 }
 
+// What a block's comparisons are tested on.
+struct Compared {
+  const std::vector<AnswerRow>& answers;
+  const BlockSummary& summary;
+  const Blocks& blocks;
+  const std::vector<ParticipantGroup>& groups;
+};
+
 HypothesisResult result_of(const PlannedComparison& planned, const BlockDesign& design,
-                           const std::vector<AnswerRow>& answers, const Blocks& blocks) {
+                           const Compared& of) {
   try {
     if (!design.premise.empty()) {
       return not_tested(planned, design.premise);
     }
+    if (!planned.groups.empty()) {
+      return compare_groups(planned, of.summary, of.groups);
+    }
     if (planned.below) {
-      return below_level(planned, values_of(design.name, blocks));
+      return below_level(planned, values_of(design.name, of.blocks));
     }
     if (!planned.other_block.empty()) {
       const auto compare = planned.within > 0.0 ? equivalent_blocks : different_blocks;
-      return compare(planned, values_of(design.name, blocks),
-                     values_of(planned.other_block, blocks));
+      return compare(planned, values_of(design.name, of.blocks),
+                     values_of(planned.other_block, of.blocks));
     }
-    const MeansByStimulus means = means_by_stimulus(answers);
-    return planned.factors.empty() ? equivalent_stimuli(planned, means)
-                                   : interaction_of_factors(planned, design, means,
-                                                            answers.front().is_correct.has_value());
+    const MeansByStimulus means = means_by_stimulus(of.answers);
+    return planned.factors.empty()
+               ? equivalent_stimuli(planned, means)
+               : interaction_of_factors(planned, design, means,
+                                        of.answers.front().is_correct.has_value());
   } catch (const core::NotEstimable& error) {
     return not_tested(planned, error.what());
   }
@@ -272,10 +284,8 @@ void add_planned_comparisons(const StudyDesign& design,
       continue;
     }
     for (const PlannedComparison& planned : block.comparisons) {
-      const bool is_of_groups = !planned.groups.empty() && block.premise.empty();
-      (*summary)->hypotheses.push_back(is_of_groups
-                                           ? compare_groups(planned, **summary, design.groups)
-                                           : result_of(planned, block, own->second, blocks));
+      (*summary)->hypotheses.push_back(
+          result_of(planned, block, {own->second, **summary, blocks, design.groups}));
     }
   }
 }

@@ -14,8 +14,7 @@ namespace tapstudy::core {
 // Preconditioner in two levels, as the hierarchy has them (Bank 1996): a symmetric Gauss-Seidel
 // step on what the larger space adds, then the given space's factor at the band limit. It ends when
 // a step, and what those to come would add by how the last two shrank, is less than a fiftieth of
-// every drop, or after 100. The same start always, so the same
-// result.
+// every drop, or after 100. The same start always, so the same result.
 Eigen::ArrayXd frequencies_in_larger_space(const StiffnessAndMass& given, const Modes& modes,
                                            const EnrichedBody& larger,
                                            const ProgressHook& progress);

@@ -250,6 +250,11 @@ HypothesisResult result_of(const PlannedComparison& planned, const BlockDesign& 
     if (!design.premise.empty()) {
       return not_tested(planned, design.premise);
     }
+    if (!planned.groups.empty() && !of.summary.part_of.empty()) {
+      return not_tested(planned,
+                        "the block is reported at each value of its further axes, and has "
+                        "no value a participant as a whole");
+    }
     if (!planned.groups.empty()) {
       return compare_groups(planned, of.summary, of.groups);
     }

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "analysis/report/study/planned_comparisons.hpp"
 #include "analysis/statistics/population/independent_groups.hpp"
 #include "support/catch.hpp"
 using namespace tapstudy;
@@ -101,6 +102,36 @@ TEST_CASE("a declared contrast of two groups is theirs in the table, in no other
   CHECK_THAT(result.test, Contains("trained (3 participants) against untrained (4 participants)"));
   planned.groups = {"between", "trained"};
   CHECK_FALSE(compare_groups(planned, *blocks[0], three).p);
+}
+
+TEST_CASE("a declared contrast of groups is a hypothesis of its block, and of no part of one",
+          "[analysis][report][groups]") {
+  BlockDesign test;
+  test.name = "test";
+  PlannedComparison learned;
+  learned.groups = {"trained", "untrained"};
+  test.comparisons.push_back(learned);
+  StudyDesign design;
+  design.blocks = {test};
+  design.groups = groups;
+  const bool is_part = GENERATE(false, true);
+  CAPTURE(is_part);
+  BlockDesign reported = test;
+  reported.name = is_part ? "test_at_250" : "test";
+  reported.part_of = is_part ? "test" : "";
+  const auto block = std::make_shared<BlockSummary>(reported);
+  block->personal = PersonalValues{"share", false, shares};
+  const std::map<std::string, std::vector<results::AnswerRow>> answers{{"test", {{}}}};
+  SECTION("tested") {
+    add_planned_comparisons(design, answers, {block});
+    REQUIRE(block->hypotheses.size() == 1);
+    CHECK(block->hypotheses[0].p.has_value() == !is_part);
+  }
+  SECTION("not without its premise") {
+    design.blocks[0].premise = "nobody was trained";
+    add_planned_comparisons(design, answers, {block});
+    CHECK(block->hypotheses.at(0).test == "nobody was trained");
+  }
 }
 
 TEST_CASE("without two groups in a block nothing is compared", "[analysis][report][groups]") {

@@ -70,7 +70,7 @@ TEST_CASE("methods say of no participant that they did the blocks of another gro
                                      : "groups: [{name: g1}, {name: g2}]\n";
   const protocols::Protocol protocol = testing::with_blocks({"one", "two", "test"}, groups);
   std::vector<results::SessionRow> sessions(2);
-  for (const int i : {0, 1}) {
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
     sessions.at(i).participant_id = i == 0 ? "P1" : "P2";
     sessions.at(i).group = {.name = i == 0 ? "g1" : "g2"};
   }

@@ -29,9 +29,6 @@ inline constexpr std::array references{
     Reference{"Bock & Aitkin 1981",
               "Bock, R. D. & Aitkin, M. (1981). Marginal maximum likelihood estimation of item "
               "parameters: application of an EM algorithm. Psychometrika 46, 443–459."},
-    Reference{"Bowker 1948",
-              "Bowker, A. H. (1948). A test for symmetry in contingency tables. Journal of the "
-              "American Statistical Association 43, 572–574."},
     Reference{"Bradley & Terry 1952",
               "Bradley, R. A. & Terry, M. E. (1952). Rank analysis of incomplete block designs: I. "
               "The method of paired comparisons. Biometrika 39, 324–345."},
@@ -67,6 +64,9 @@ inline constexpr std::array references{
     Reference{"Gourevitch & Galanter 1967",
               "Gourevitch, V. & Galanter, E. (1967). A significance test for one parameter "
               "isosensitivity functions. Psychometrika 32, 25–33."},
+    Reference{"Grizzle, Starmer & Koch 1969",
+              "Grizzle, J. E., Starmer, C. F. & Koch, G. G. (1969). Analysis of categorical data "
+              "by linear models. Biometrics 25, 489–504."},
     Reference{"Haberman 1973",
               "Haberman, S. J. (1973). The analysis of residuals in cross-classified tables. "
               "Biometrics 29, 205–220."},
@@ -126,9 +126,6 @@ inline constexpr std::array references{
     Reference{"Macmillan & Creelman 2005",
               "Macmillan, N. A. & Creelman, C. D. (2005). Detection Theory: A User's Guide, 2nd "
               "ed. Lawrence Erlbaum."},
-    Reference{"Maxwell 1970",
-              "Maxwell, A. E. (1970). Comparing the classification of subjects by two independent "
-              "judges. British Journal of Psychiatry 116, 651–655."},
     Reference{"McGraw & Wong 1996",
               "McGraw, K. O. & Wong, S. P. (1996). Forming inferences about some intraclass "
               "correlation coefficients. Psychological Methods 1, 30–46."},
@@ -152,10 +149,6 @@ inline constexpr std::array references{
               "Schütt, H. H., Harmeling, S., Macke, J. H. & Wichmann, F. A. (2016). Painfree and "
               "accurate Bayesian estimation of psychometric functions for (potentially) "
               "overdispersed data. Vision Research 122, 105–123."},
-    Reference{
-        "Stuart 1955",
-        "Stuart, A. (1955). A test for homogeneity of the marginal distributions in a two-way "
-        "classification. Biometrika 42, 412–416."},
     Reference{"Thurstone 1927",
               "Thurstone, L. L. (1927). A law of comparative judgment. Psychological Review 34, "
               "273–286."},

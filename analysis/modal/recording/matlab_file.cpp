@@ -1,40 +1,24 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <hdf5.h>
 #include <matio.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 
-#include "analysis/modal/recording/sampling.hpp"
+#include "analysis/modal/recording/array_file.hpp"
 #include "core/error.hpp"
-#include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
 namespace {
-constexpr std::size_t max_matlab_values = 100'000'000;
-
 struct CloseMatlab {
   void operator()(mat_t* file) const { Mat_Close(file); }
   void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
 };
 using MatlabFile = std::unique_ptr<mat_t, CloseMatlab>;
 using MatlabVariable = std::unique_ptr<matvar_t, CloseMatlab>;
-
-struct MatlabArray {
-  std::string name;  // "acc", or "hammer.acc" within a structure
-  std::size_t rows{};
-  std::size_t columns{};
-  std::size_t size() const { return rows * columns; }
-  bool is_vector() const { return rows == 1 || columns == 1; }
-  std::string own_name() const { return name.substr(name.rfind('.') + 1); }
-  std::string structure() const { return name.substr(0, name.size() - own_name().size()); }
-  std::size_t channels() const { return std::min(rows, columns); }
-};
 
 bool is_numeric(const matvar_t& variable) {
   return variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64 &&
@@ -46,7 +30,7 @@ bool is_structure(const matvar_t& variable) {
          variable.dims[1] == 1;  // one, not a list of them
 }
 
-void add_arrays(matvar_t& variable, const std::string& name, std::vector<MatlabArray>& arrays) {
+void add_arrays(matvar_t& variable, const std::string& name, std::vector<NamedArray>& arrays) {
   constexpr std::ptrdiff_t most_levels = 8;
   if (is_structure(variable) && std::ranges::count(name, '.') < most_levels) {
     char* const* const fields = Mat_VarGetStructFieldnames(&variable);
@@ -59,14 +43,14 @@ void add_arrays(matvar_t& variable, const std::string& name, std::vector<MatlabA
   }
   const std::size_t rows = is_numeric(variable) ? variable.dims[0] : 0;
   const std::size_t columns = is_numeric(variable) ? variable.dims[1] : 0;
-  if (rows > 0 && columns > 0 && columns <= max_matlab_values / rows) {
+  if (rows > 0 && columns > 0 && columns <= max_array_values / rows) {
     arrays.push_back({name, rows, columns});
   }
 }
 
 // The real matrices of numbers in the file and in its structures.
-std::vector<MatlabArray> matlab_arrays(mat_t* file) {
-  std::vector<MatlabArray> arrays;
+std::vector<NamedArray> matlab_arrays(mat_t* file) {
+  std::vector<NamedArray> arrays;
   for (MatlabVariable one{Mat_VarReadNextInfo(file)}; one; one.reset(Mat_VarReadNextInfo(file))) {
     if (one->name != nullptr) {
       add_arrays(*one, one->name, arrays);
@@ -111,7 +95,7 @@ std::vector<double> doubles_of(const matvar_t& variable, std::size_t count) {
 }
 
 // Column after column.
-std::vector<double> values_of(mat_t* file, const MatlabArray& array, const std::string& path) {
+std::vector<double> values_of(mat_t* file, const NamedArray& array, const std::string& path) {
   std::string name = array.name;
   std::size_t dot = name.find('.');
   const MatlabVariable outermost{Mat_VarRead(file, name.substr(0, dot).c_str())};
@@ -128,111 +112,6 @@ std::vector<double> values_of(mat_t* file, const MatlabArray& array, const std::
         fmt::format("{}: its variable {} cannot be read: is the file cut off?", path, array.name)};
   }
   return doubles_of(*variable, array.size());
-}
-
-std::vector<double> channel_of(const std::vector<double>& values, const MatlabArray& array,
-                               std::size_t channel) {
-  const bool are_columns = array.rows >= array.columns;
-  std::vector<double> samples;
-  for (std::size_t i = 0; i < std::max(array.rows, array.columns); ++i) {
-    samples.push_back(are_columns ? values[channel * array.rows + i]
-                                  : values[i * array.rows + channel]);
-  }
-  return samples;
-}
-
-struct MatlabChannel {
-  std::string name;  // "acc", "acc:2"
-  const MatlabArray* array{};
-  std::size_t channel{};
-};
-
-bool is_time(const MatlabArray& array) {
-  return seconds_per_unit(array.own_name()) > 0.0 && array.is_vector();
-}
-
-std::vector<MatlabChannel> matlab_channels(const std::vector<MatlabArray>& arrays) {
-  std::vector<MatlabChannel> channels;
-  for (const MatlabArray& array : arrays) {
-    if (array.size() / array.channels() < min_samples || is_time(array)) {
-      continue;
-    }
-    for (std::size_t i = 0; i < array.channels(); ++i) {
-      channels.push_back(
-          {array.channels() == 1 ? array.name : fmt::format("{}:{}", array.name, i + 1), &array,
-           i});
-    }
-  }
-  return channels;
-}
-
-const MatlabChannel& chosen_of(const std::vector<MatlabChannel>& channels,
-                               const std::string& column, const std::string& file) {
-  const auto named = std::ranges::find(channels, column, &MatlabChannel::name);
-  if (named != channels.end()) {
-    return *named;
-  }
-  const auto number = core::number_in<std::size_t>(column);
-  if (number && *number >= 1 && *number <= channels.size()) {
-    return channels[*number - 1];
-  }
-  if (column.empty() && channels.size() == 1) {
-    return channels.front();
-  }
-  std::vector<std::string> names;
-  std::ranges::transform(channels, std::back_inserter(names), &MatlabChannel::name);
-  constexpr std::size_t most_named = 12;
-  const bool are_many = names.size() > most_named;
-  names.resize(std::min(names.size(), most_named));
-  throw core::InvalidInput{
-      fmt::format("{}: {} (choose one by --column: {}{})", file,
-                  column.empty() ? fmt::format("has {} channels", channels.size())
-                                 : fmt::format("--column '{}' is none of its channels", column),
-                  fmt::join(names, ", "), are_many ? " ..." : "")};
-}
-
-// Times and a scalar beside them that say different rates.
-void check_agree(double of_times_hz, const std::string& times, double of_scalar_hz,
-                 const std::string& scalar, const Recording& recording,
-                 const ReadingOptions& options) {
-  const bool is_decided = options.rate_hz > 0.0 && options.trusts_rate;
-  const bool agree = std::abs(of_scalar_hz / of_times_hz - 1.0) <= max_rate_difference;
-  if (!agree && !is_decided) {
-    throw core::InvalidInput{
-        fmt::format("{}: its times {} say {:.6g} samples a second, its scalar {} {:.6g} (the right "
-                    "one: --rate HZ --trust-rate)",
-                    recording.file, times, of_times_hz, scalar, of_scalar_hz)};
-  }
-}
-
-// By the times or the scalar beside the chosen array, or else of the file.
-std::optional<double> matlab_rate(mat_t* file, std::vector<MatlabArray> arrays,
-                                  const MatlabArray& chosen, const ReadingOptions& options,
-                                  Recording& recording) {
-  const std::string& path = recording.file;
-  std::stable_partition(arrays.begin(), arrays.end(), [&](const MatlabArray& array) {
-    return array.structure() == chosen.structure();
-  });
-  constexpr std::array names{"fs", "rate", "rate_hz", "sample_rate", "sampling_rate"};
-  const auto is_rate = [&](const MatlabArray& array) {
-    const std::string name = core::lower_case(array.own_name());
-    return array.size() == 1 && std::ranges::find(names, name) != names.end();
-  };
-  const auto scalar = std::ranges::find_if(arrays, is_rate);
-  const auto of_scalar =
-      scalar == arrays.end() ? std::nullopt : std::optional{values_of(file, *scalar, path).front()};
-  for (const MatlabArray& array : arrays) {
-    if (is_time(array) && array.size() == recording.samples.size()) {
-      const auto rate_hz = rate_of_times(
-          values_of(file, array, path), seconds_per_unit(array.own_name()), options,
-          [&](std::size_t) { return path; }, recording.remarks);
-      if (rate_hz && of_scalar && scalar->structure() == array.structure()) {
-        check_agree(*rate_hz, array.name, *of_scalar, scalar->name, recording, options);
-      }
-      return rate_hz;
-    }
-  }
-  return of_scalar;
 }
 
 [[noreturn]] void refuse_matlab(const std::string& file) {
@@ -290,30 +169,16 @@ Recording read_matlab_file(const std::string& file, const ReadingOptions& option
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors of version 7.3's are told once, by us
   check_is_whole(file);
   const MatlabFile opened{Mat_Open(file.c_str(), MAT_ACC_RDONLY)};
+  if (!opened && H5Fis_hdf5(file.c_str()) > 0) {
+    return read_hdf5_file(file, options);
+  }
   if (!opened) {
     refuse_matlab(file);
   }
-  const std::vector<MatlabArray> arrays = matlab_arrays(opened.get());
-  const std::vector<MatlabChannel> channels = matlab_channels(arrays);
-  if (channels.empty()) {
-    throw core::InvalidInput{
-        fmt::format("{}: holds no real numeric array of at least {} samples (cells and lists of "
-                    "structures are not searched: save their arrays as variables)",
-                    file, min_samples)};
-  }
-  const MatlabChannel& chosen = chosen_of(channels, options.column, file);
-  Recording recording{
-      file,
-      chosen.name,
-      0.0,
-      channel_of(values_of(opened.get(), *chosen.array, file), *chosen.array, chosen.channel),
-      {}};
-  check_samples(recording);
-  const auto rate_hz = matlab_rate(opened.get(), arrays, *chosen.array, options, recording);
-  if (!rate_hz && !(options.rate_hz > 0.0)) {
-    throw core::InvalidInput{file + ": states no rate, by times t or a scalar fs (give --rate HZ)"};
-  }
-  recording.rate_hz = agreed_rate(rate_hz, options, file, "says", recording.remarks);
-  return recording;
+  return recording_in(
+      {file, '.', matlab_arrays(opened.get()),
+       "cells and lists of structures are not searched: save their arrays as variables",
+       [&](const NamedArray& array) { return values_of(opened.get(), array, file); }},
+      options);
 }
 }  // namespace tapstudy::analysis

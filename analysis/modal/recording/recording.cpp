@@ -223,9 +223,9 @@ std::string advice_on_format(const std::string& ending) {
     return "LabVIEW's TDMS is not read: save it as text (.lvm) or MATLAB file, or convert it, in "
            "Python by npTDMS, to CSV";
   }
-  if (ending == ".h5" || ending == ".hdf5" || ending == ".npy" || ending == ".npz") {
-    return "arrays of HDF5 and numpy are not read: save them as a table (numpy.savetxt) or MATLAB "
-           "file (scipy.io.savemat)";
+  if (ending == ".npy" || ending == ".npz") {
+    return "arrays of numpy are not read: save them as a table (numpy.savetxt) or MATLAB file "
+           "(scipy.io.savemat)";
   }
   return {};
 }
@@ -235,6 +235,10 @@ Recording read_recording(const std::string& file, const ReadingOptions& options)
   const std::string ending = lower_case_ending(file);
   if (ending == ".mat") {
     return read_matlab_file(file, options);
+  }
+  constexpr std::array hdf5{".h5", ".hdf5", ".hdf", ".he5", ".nc"};
+  if (std::ranges::find(hdf5, ending) != hdf5.end()) {
+    return read_hdf5_file(file, options);
   }
   if (ending == ".uff" || ending == ".unv" || ending == ".uf") {
     return read_universal_file(file, options);

@@ -33,10 +33,10 @@ inline constexpr std::size_t min_samples = 64;
 inline constexpr double max_jitter_periods = 0.1;
 
 // Chooses the reader by the extension: read_csv_recording for .csv, .txt, .tsv, .dat, .asc and
-// .lvm, read_matlab_file for .mat, read_universal_file for .uff, .unv and .uf, read_sound_file for
-// any other. Throws InvalidInput, with the file and, of text, the line: unreadable, no such column,
-// no rate, another rate than given, times that are not uniform, values that are not finite, fewer
-// than min_samples; in words how to convert what is not read.
+// .lvm, read_matlab_file for .mat, read_hdf5_file for .h5, .hdf5 ..., read_universal_file for .uff,
+// .unv and .uf, read_sound_file for any other. Throws InvalidInput, with the file and, of text, the
+// line: unreadable, no such column, no rate, another rate than given, times that are not uniform,
+// values that are not finite, fewer than min_samples; in words how to convert what is not read.
 Recording read_recording(const std::string& file, const ReadingOptions& options);
 
 // One channel of a table: cells separated by tabs, semicolons, commas or blanks (the first of these
@@ -54,11 +54,11 @@ Recording read_csv_recording(std::istream& text, const std::string& file,
 // as read_recording says.
 Recording read_sound_file(const std::string& file, const ReadingOptions& options);
 
-// One real numeric array of a MATLAB file of versions 4 to 7.3, by matio: a vector, or of a matrix
-// one channel along its longer side ("acc:2"). The rate is that of a vector of as many times
-// (seconds_per_unit of its name) or of a scalar named fs, rate, rate_hz, sample_rate or
-// sampling_rate. Throws InvalidInput as read_recording says.
+// One real numeric array of a MATLAB file of versions 4 to 7.3, by matio, or of an HDF5 file (and
+// so of netCDF 4): recording_in says which, and its rate. Throw InvalidInput as read_recording
+// says.
 Recording read_matlab_file(const std::string& file, const ReadingOptions& options);
+Recording read_hdf5_file(const std::string& file, const ReadingOptions& options);
 
 // One time record (function type 1) of the data sets 58 and 58b of a universal file (SDRC, as
 // documented by the University of Cincinnati): real, evenly spaced, single or double, of either

@@ -75,18 +75,16 @@ void add_square(const CountTable& square, ReportSection& section) {
       "Symmetry of confusions",
       {column("test", "test"), column("χ²", "chi_squared"), column("df", "degrees_of_freedom"),
        column("p (answers independent)", "p")}};
-  const auto add = [&](const CitingText& name, const std::optional<ChiSquaredTest>& test) {
+  const auto add = [&](const char* name, const std::optional<ChiSquaredTest>& test) {
     if (test) {
       symmetry.rows.push_back({word(name), number(test->chi_squared),
                                number(test->degrees_of_freedom), probability(test->p)});
     } else {
-      section.remarks.push_back(core::citing("{}: nothing to test.", name));
+      section.remarks.push_back(fmt::format("{}: nothing to test.", name));
     }
   };
-  add(core::citing("i for j as often as j for i ({})", "Bowker 1948"_source), bowker_test(square));
-  add(core::citing("named as often as presented ({}, {})", "Stuart 1955"_source,
-                   "Maxwell 1970"_source),
-      stuart_maxwell_test(square));
+  add("i for j as often as j for i", symmetry_test(square));
+  add("named as often as presented", homogeneity_test(square));
   section.tables.push_back(kappas);
   section.tables.push_back(symmetry);
 }
@@ -125,9 +123,10 @@ ReportTable naming_table(const MatrixOfParticipants& counted) {
 }
 
 void add_naming(const MatrixOfParticipants& counted, ReportSection& section) {
-  section.remarks.emplace_back(
-      "Bowker's and Stuart and Maxwell's variances let presentations vary as answers do: where the "
-      "protocol fixes how often a stimulus is presented, these tests reject too seldom.");
+  section.remarks.push_back(core::citing(
+      "Symmetry is tested by rates of answers to each class ({}), so that it does not matter how "
+      "often each was presented.",
+      "Grizzle, Starmer & Koch 1969"_source));
   if (counted.participants.size() > 1) {
     section.tables.push_back(naming_table(counted));
     section.remarks.emplace_back(

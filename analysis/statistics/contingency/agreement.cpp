@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "analysis/statistics/distributions.hpp"
 #include "analysis/statistics/resampling/replicates.hpp"
@@ -44,48 +46,53 @@ std::optional<Kappa> cohens_kappa(const CountTable& table) {
   return Kappa{kappa, error, {std::max(-1.0, kappa - reach), std::min(1.0, kappa + reach)}};
 }
 
-std::optional<ChiSquaredTest> bowker_test(const CountTable& table) {
-  totals_of_square(table);
-  double sum = 0.0;
-  int pairs = 0;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    for (std::size_t j = i + 1; j < table.size(); ++j) {
-      const auto confused = static_cast<double>(table[i][j] + table[j][i]);
-      const auto difference = static_cast<double>(table[i][j] - table[j][i]);
-      sum += confused > 0.0 ? difference * difference / confused : 0.0;
-      pairs += confused > 0.0 ? 1 : 0;
-    }
-  }
-  if (pairs == 0) {
-    return std::nullopt;
-  }
-  return ChiSquaredTest{sum, static_cast<double>(pairs), chi_squared_p(sum, pairs)};
-}
+namespace {
+// The rates of a square table and the covariance of each row of them, 0 in rows never presented.
+struct Rates {
+  Eigen::MatrixXd of_answers;
+  std::vector<Eigen::MatrixXd> covariances;
+};
 
-std::optional<ChiSquaredTest> stuart_maxwell_test(const CountTable& table) {
+Rates rates_of(const CountTable& table) {
   const TableTotals totals = totals_of_square(table);
   const auto size = static_cast<Eigen::Index>(table.size());
-  Eigen::VectorXd difference(size);
-  Eigen::MatrixXd covariance(size, size);
+  Eigen::MatrixXd counts(size, size);
+  Eigen::VectorXd presented(size);
   for (Eigen::Index i = 0; i < size; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    difference(i) = static_cast<double>(totals.rows[row] - totals.columns[row]);
+    presented(i) = static_cast<double>(totals.rows[static_cast<std::size_t>(i)]);
     for (Eigen::Index j = 0; j < size; ++j) {
-      const auto column = static_cast<std::size_t>(j);
-      covariance(i, j) =
-          i == j ? static_cast<double>(totals.rows[row] + totals.columns[row] - 2 * table[row][row])
-                 : -static_cast<double>(table[row][column] + table[column][row]);
+      counts(i, j) =
+          static_cast<double>(table[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]);
     }
   }
-  // The whole matrix is singular, for differences add up to 0: within its range the inverse gives
-  // the same as without one class.
+  Rates rates{Eigen::MatrixXd::Zero(size, size), {table.size(), Eigen::MatrixXd::Zero(size, size)}};
+  for (Eigen::Index i = 0; i < size; ++i) {
+    if (presented(i) == 0.0) {
+      continue;
+    }
+    rates.of_answers.row(i) = counts.row(i) / presented(i);
+    Eigen::VectorXd symmetric =
+        (counts.row(i).transpose() + counts.col(i)).array() / (presented.array() + presented(i));
+    symmetric(i) = 0.0;
+    symmetric(i) = std::max(0.0, 1.0 - symmetric.sum());
+    // the sum is 1 unless a class is named so often that no symmetric rates are as near
+    rates.covariances[static_cast<std::size_t>(i)] =
+        (symmetric.sum() * Eigen::MatrixXd{symmetric.asDiagonal()} -
+         symmetric * symmetric.transpose()) /
+        presented(i);
+  }
+  return rates;
+}
+
+std::optional<ChiSquaredTest> is_zero_test(const Eigen::VectorXd& difference,
+                                           const Eigen::MatrixXd& covariance) {
   const core::EigenPairs pairs = core::symmetric_eigenpairs(covariance);
-  const double largest = std::max(pairs.values.maxCoeff(), 0.0);
   const Eigen::VectorXd along = pairs.vectors.transpose() * difference;
+  const double least = 1e-10 * pairs.values.maxCoeff();
   double sum = 0.0;
   int rank = 0;
-  for (Eigen::Index i = 0; i < size; ++i) {
-    if (pairs.values(i) > 1e-10 * largest) {
+  for (Eigen::Index i = 0; i < difference.size(); ++i) {
+    if (pairs.values(i) > std::max(least, 0.0)) {
       sum += along(i) * along(i) / pairs.values(i);
       ++rank;
     }
@@ -94,6 +101,63 @@ std::optional<ChiSquaredTest> stuart_maxwell_test(const CountTable& table) {
     return std::nullopt;
   }
   return ChiSquaredTest{sum, static_cast<double>(rank), chi_squared_p(sum, rank)};
+}
+
+// Pairs of classes, both presented, of which one was answered with the other.
+std::vector<std::pair<std::size_t, std::size_t>> confused_pairs(const CountTable& table,
+                                                                const TableTotals& totals) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    for (std::size_t j = i + 1; j < table.size(); ++j) {
+      if (totals.rows[i] > 0 && totals.rows[j] > 0 && table[i][j] + table[j][i] > 0) {
+        pairs.emplace_back(i, j);
+      }
+    }
+  }
+  return pairs;
+}
+}  // namespace
+
+std::optional<ChiSquaredTest> symmetry_test(const CountTable& table) {
+  const Rates rates = rates_of(table);
+  const auto pairs = confused_pairs(table, totals_of(table));
+  if (pairs.empty()) {
+    return std::nullopt;
+  }
+  const auto count = static_cast<Eigen::Index>(pairs.size());
+  Eigen::VectorXd difference(count);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
+  // How the difference of a pair depends on the row's rates: by its column and a sign; 0 if not.
+  const auto in_row = [&](Eigen::Index pair, std::size_t row) -> std::pair<Eigen::Index, double> {
+    const auto [first, second] = pairs[static_cast<std::size_t>(pair)];
+    if (row == first) {
+      return {static_cast<Eigen::Index>(second), 1.0};
+    }
+    return {static_cast<Eigen::Index>(first), row == second ? -1.0 : 0.0};
+  };
+  for (Eigen::Index a = 0; a < count; ++a) {
+    difference(a) = 0.0;
+    for (std::size_t row = 0; row < table.size(); ++row) {
+      const auto [column, sign] = in_row(a, row);
+      difference(a) += sign * rates.of_answers(static_cast<Eigen::Index>(row), column);
+      for (Eigen::Index b = 0; b < count; ++b) {
+        const auto [other_column, other_sign] = in_row(b, row);
+        covariance(a, b) += sign * other_sign * rates.covariances[row](column, other_column);
+      }
+    }
+  }
+  return is_zero_test(difference, covariance);
+}
+
+std::optional<ChiSquaredTest> homogeneity_test(const CountTable& table) {
+  const Rates rates = rates_of(table);
+  const auto size = static_cast<Eigen::Index>(table.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  for (const Eigen::MatrixXd& of_row : rates.covariances) {
+    covariance += of_row;
+  }
+  const Eigen::VectorXd presented = rates.of_answers.rowwise().sum();  // 1, or 0
+  return is_zero_test(rates.of_answers.colwise().sum().transpose() - presented, covariance);
 }
 
 namespace {

@@ -25,15 +25,19 @@ struct ChiSquaredTest {
   double degrees_of_freedom{};
   double p{};
 };
-// Bowker 1948: is i answered with j as often as j with i? Sum over pairs of (n_ij - n_ji)^2 /
-// (n_ij + n_ji); one degree of freedom for each pair that was confused at all. Unset if none was.
-// Both functions throw InvalidInput as totals_of_square does.
-std::optional<ChiSquaredTest> bowker_test(const CountTable& table);
-
-// Stuart 1955 and Maxwell 1970: is every class answered as often as it was presented? d' V^-1 d
-// with d_i = n_i. - n_.i and V_ii = n_i. + n_.i - 2 n_ii, V_ij = -(n_ij + n_ji), without one class;
-// as many degrees of freedom as the rank of V. Unset if that is 0.
-std::optional<ChiSquaredTest> stuart_maxwell_test(const CountTable& table);
+// Both are tests of linear functions of the rates of answers, r_ij = n_ij / n_i., whose rows are
+// independent multinomials, for a protocol fixes how often a stimulus is presented: d' V^+ d with
+// as many degrees of freedom as V has rank (Grizzle, Starmer & Koch 1969). V is that of rates which
+// are symmetric, (n_ij + n_ji) / (n_i. + n_j.), which of two classes gives Pearson's test of equal
+// proportions (1900). Unset where nothing was confused. They throw InvalidInput as totals_of_square
+// does.
+//
+// Is i answered with j as often as j with i? d_ij = r_ij - r_ji of each pair that was presented and
+// confused at all.
+std::optional<ChiSquaredTest> symmetry_test(const CountTable& table);
+// Is every class named as often as it would be presented if all were presented equally often?
+// d_j = sum over i of r_ij - 1, where j was presented at all, else without the 1.
+std::optional<ChiSquaredTest> homogeneity_test(const CountTable& table);
 
 // Do answers depend on what was presented? Pearson's X^2 and the likelihood ratio G^2 = 2 sum n_ij
 // ln(n_ij / e_ij) with e_ij = n_i. n_.j / N; lines without answers are left out.

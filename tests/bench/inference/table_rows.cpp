@@ -45,13 +45,13 @@ std::vector<Row> rows_of_tables() {
   constexpr const char* task = "identification, answers independent";
   return {
       {coverage, task, "kappa", By::people, agreement},
-      {size, task, "i for j as often as j for i (Bowker)", By::people,
+      {size, task, "i for j as often as j for i", By::people,
        [](const StudyDraw& draw) {
-         return p_of(analysis::bowker_test(independent_answers(draw, 0.6)));
+         return p_of(analysis::symmetry_test(independent_answers(draw, 0.6)));
        }},
-      {size, task, "named as often as presented (Stuart, Maxwell)", By::people,
+      {size, task, "named as often as presented", By::people,
        [](const StudyDraw& draw) {
-         return p_of(analysis::stuart_maxwell_test(independent_answers(draw, 0.6)));
+         return p_of(analysis::homogeneity_test(independent_answers(draw, 0.6)));
        }},
       {size, task, "answers depend on stimuli, chi-squared", By::people,
        [](const StudyDraw& draw) {

@@ -146,6 +146,8 @@ TEST_CASE("no number of a file that is cut anywhere is another than in the whole
   check_cuts(directory, {"packed.mat", matlab_of(directory, both + "'5', do_compression=True)")});
   check_cuts(directory, {"old.mat", matlab_of(directory, both + "'4')"), false});
   check_cuts(directory, {"new.mat", matlab_of(directory, matlab_7_3)});
+  const std::string hdf5 = "with h5py.File(file, 'w') as f:\n  f['acc'] = x; f['fs'] = 8.0";
+  check_cuts(directory, {"taps.h5", matlab_of(directory, hdf5)});
 }
 
 TEST_CASE("a last line without a line end is left out and named", "[analysis][recordings]") {

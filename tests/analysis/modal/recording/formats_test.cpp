@@ -443,6 +443,65 @@ TEST_CASE(
   CHECK(recording.samples == values);
 }
 
+TEST_CASE("an array of an HDF5 file is what h5py wrote, with the nearest rate",
+          "[analysis][recordings][formats]") {
+  const std::string write = GENERATE(
+      as<std::string>{}, "f['acc'] = x; f['fs'] = 2000",
+      "f['acc'] = x.astype('>f4'); f['acc'].attrs['Sampling Rate (Hz)'] = np.float32(2000)",
+      "f['acc'] = (8 * x).astype('<i2') / 8; f.attrs['dt'] = 0.0005",
+      "f.create_dataset('acc', data=x, chunks=(7,), compression='gzip', shuffle=True)\n"
+      "f['time_ms'] = np.arange(80) / 2",
+      "f.create_dataset('acc', data=x, dtype='<f8'); f['fs'] = 2000.0; f['name'] = 'plate'\n"
+      "f['z'] = x + 1j * x; f['cube'] = np.zeros((80, 80, 2)); f['loop'] = f['/']",
+      "f['data'] = np.stack([-x, x], 1); f['data'].attrs['fs'] = 2000",
+      "f['data'] = np.stack([-x, x]); f.attrs['sample_rate_hz'] = np.array([2000])",
+      "f['fs'] = 9; g = f.create_group('a/b'); g['acc'] = x; g.attrs['fs'] = 2000\n"
+      "o = f.create_group('other'); o['fs'] = 50; o['acc'] = -x",
+      "t = np.zeros(80, [('time', 'f8'), ('acc', 'f4'), ('name', 'S3')])\n"
+      "t['time'], t['acc'] = np.arange(80) / 2000, x; f['table'] = t");
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.h5";
+  const auto values = testing::python_numbers(
+      "import h5py\nx = np.round(8 * np.sin(0.3 * "
+      "np.arange(80))) / 8\nf = h5py.File('" +
+      file + "', 'w')\n" + write + "\nf.close()\nout(x)\n");
+  CAPTURE(write);
+  ReadingOptions options;
+  options.column = write.starts_with("f['data']") ? "data:2" : "";
+  options.column = write.starts_with("f['fs']") ? "a/b/acc" : options.column;
+  const Recording recording = read_recording(file, options);
+  CHECK(recording.samples == values);
+  CHECK(recording.rate_hz == Approx(rate_hz));
+}
+
+TEST_CASE("scalars in other structures than an array's give no rate where they differ",
+          "[analysis][recordings][formats]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.mat";
+  saved_by_scipy({{file, "'acc': x, 'dac': {'fs': 48000.0}, 'adc': {'fs': 2000.0}"},
+                  {directory / "one.mat", "'acc': x, 'adc': {'fs': 2000.0}"}});
+  CHECK_THROWS_WITH(read_recording(file, {}), Contains("states no rate"));
+  CHECK(read_recording(directory / "one.mat", {}).rate_hz == rate_hz);
+}
+
+TEST_CASE("an HDF5 file as Octave writes it is read by its variables' names",
+          "[analysis][recordings][formats]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.h5";
+  testing::python_numbers("import h5py\nf = h5py.File('" + file +
+                          "', 'w')\n"
+                          "for name, kind, value in (('fs', 'scalar', 2000.0),\n"
+                          "    ('acc', 'matrix', np.sin(0.3 * np.arange(80)).reshape(80, 1))):\n"
+                          "  g = f.create_group(name)\n"
+                          "  g.attrs['OCTAVE_NEW_FORMAT'] = np.uint8(1)\n"
+                          "  g['type'], g['value'] = np.bytes_(kind), value\n"
+                          "f.close()\nout([0])\n");
+  const Recording recording = read_recording(file, {});
+  CHECK(recording.channel == "acc");
+  CHECK(recording.rate_hz == rate_hz);
+  CHECK(recording.samples.at(1) == Approx(std::sin(0.3)));
+}
+
 TEST_CASE("what a library takes for sound without a header is no recording",
           "[analysis][recordings][formats]") {
   const testing::TempDirectory directory;
@@ -451,7 +510,7 @@ TEST_CASE("what a library takes for sound without a header is no recording",
                           "', {'fs': 8000.0, 'acc': np.sin(0.3 * np.arange(800))}, "
                           "appendmat=False)\nout([1.0])\n");
   CHECK_THROWS_WITH(read_recording(file, {}), Contains("is no sound file"));
-  for (const std::string name : {"taps.tdms", "taps.h5", "taps.npy"}) {
+  for (const std::string name : {"taps.tdms", "taps.npy"}) {
     CHECK_THROWS_WITH(read_recording(directory / name, {}), Contains("save"));
   }
 }

@@ -42,39 +42,61 @@ TEST_CASE("kappa has no value where all is of one class, and is 0 without agreem
   CHECK_THROWS_AS(cohens_kappa({{1, 2, 3}, {4, 5, 6}}), core::InvalidInput);
 }
 
-TEST_CASE("symmetry and homogeneity of totals are tested as by statsmodels",
+TEST_CASE("symmetry and homogeneity of two classes are the test of equal proportions",
           "[analysis][agreement]") {
-  const std::vector<CountTable> tables{
-      paper_table(), large_random_table(), {{8, 3}, {2, 5}}, {{3, 1, 2}, {4, 5, 6}, {1, 1, 1}}};
-  std::string script = "from statsmodels.stats.contingency_tables import SquareTable\n";
-  for (const CountTable& table : tables) {
-    script += "t = SquareTable(" + python_matrix(table) +
-              ", shift_zeros=False)\ns, h = t.symmetry(), t.homogeneity('stuart_maxwell')\n"
-              "out(s.statistic, s.df, s.pvalue, h.statistic, h.df, h.pvalue)\n";
-  }
-  const auto expected = python_numbers(script);
-  std::size_t at = 0;
-  for (const CountTable& table : tables) {
-    for (const auto& test : {bowker_test(table), stuart_maxwell_test(table)}) {
+  for (const CountTable& table : {CountTable{{8, 3}, {2, 5}}, CountTable{{70, 10}, {9, 21}}}) {
+    const auto r = r_numbers("m <- " + r_matrix(table) +
+                             "; t <- suppressWarnings(prop.test(c(m[1, 2], m[2, 1]), rowSums(m), "
+                             "correct = FALSE)); out(t$statistic, t$p.value)");
+    for (const auto& test : {symmetry_test(table), homogeneity_test(table)}) {
       REQUIRE(test);
-      CHECK(test->chi_squared == Approx(expected[at]).epsilon(1e-9));
-      CHECK(test->degrees_of_freedom == expected[at + 1]);
-      CHECK(test->p == Approx(expected[at + 2]).margin(1e-15));
-      at += 3;
+      CHECK(test->chi_squared == Approx(r[0]).epsilon(1e-9));
+      CHECK(test->degrees_of_freedom == 1.0);
+      CHECK(test->p == Approx(r[1]).epsilon(1e-9));
     }
   }
 }
 
-TEST_CASE("homogeneity of totals is coin's too", "[analysis][agreement]") {
-  const CountTable moderate{{31, 4, 7}, {12, 25, 9}, {3, 8, 40}};  // coin lists every answer
-  for (const CountTable& table : {paper_table(), moderate}) {
-    const auto coin =
-        r_numbers("suppressPackageStartupMessages(library(coin)); t <- mh_test(as.table(" +
-                  r_matrix(table) + ")); out(statistic(t), pvalue(t))");
-    const auto ours = stuart_maxwell_test(table);
-    REQUIRE(ours);
-    CHECK(ours->chi_squared == Approx(coin[0]).epsilon(1e-9));
-    CHECK(ours->p == Approx(coin[1]).epsilon(1e-9).margin(1e-12));
+TEST_CASE("symmetry and homogeneity are tests of linear functions of multinomial rates",
+          "[analysis][agreement]") {
+  const std::vector<CountTable> tables{
+      paper_table(), large_random_table(), {{3, 1, 2}, {4, 5, 6}, {1, 1, 1}}};
+  std::string script = R"(
+test <- function(d, V) {
+  r <- qr(V)$rank
+  x <- drop(t(d) %*% MASS::ginv(V) %*% d)
+  out(x, r, pchisq(x, r, lower.tail = FALSE))
+}
+tests <- function(m) {
+  k <- nrow(m); n <- rowSums(m); p <- as.vector(t(m / n))
+  s <- (m + t(m)) / outer(n, n, '+'); diag(s) <- 0; diag(s) <- pmax(0, 1 - rowSums(s))
+  V <- matrix(0, k^2, k^2)
+  for (i in 1:k) {
+    at <- (i - 1) * k + 1:k
+    V[at, at] <- (sum(s[i, ]) * diag(s[i, ]) - s[i, ] %o% s[i, ]) / n[i]
+  }
+  cell <- function(i, j) as.numeric(seq_len(k^2) == (i - 1) * k + j)
+  A <- NULL
+  for (i in 1:(k - 1)) for (j in (i + 1):k)
+    if (m[i, j] + m[j, i] > 0) A <- rbind(A, cell(i, j) - cell(j, i))
+  test(A %*% p, A %*% V %*% t(A))
+  A <- kronecker(t(rep(1, k)), diag(k))
+  test(A %*% p - 1, A %*% V %*% t(A))
+}
+)";
+  for (const CountTable& table : tables) {
+    script += "tests(" + r_matrix(table) + ")\n";
+  }
+  const auto expected = r_numbers(script);
+  std::size_t at = 0;
+  for (const CountTable& table : tables) {
+    for (const auto& test : {symmetry_test(table), homogeneity_test(table)}) {
+      REQUIRE(test);
+      CHECK(test->chi_squared == Approx(expected[at]).epsilon(1e-7));
+      CHECK(test->degrees_of_freedom == expected[at + 1]);
+      CHECK(test->p == Approx(expected[at + 2]).epsilon(1e-6).margin(1e-15));
+      at += 3;
+    }
   }
 }
 
@@ -82,14 +104,20 @@ TEST_CASE("pairs that were never confused and classes that never occur change no
           "[analysis][agreement]") {
   const CountTable table{{8, 3}, {2, 5}};
   const CountTable padded{{8, 0, 3}, {0, 0, 0}, {2, 0, 5}};
-  CHECK(bowker_test(padded)->chi_squared == Approx(bowker_test(table)->chi_squared).epsilon(1e-9));
-  CHECK(bowker_test(padded)->degrees_of_freedom == 1.0);
-  CHECK(stuart_maxwell_test(padded)->chi_squared ==
-        Approx(stuart_maxwell_test(table)->chi_squared).epsilon(1e-9));
-  CHECK(stuart_maxwell_test(padded)->degrees_of_freedom == 1.0);
-  CHECK_FALSE(bowker_test({{3, 0}, {0, 4}}));
-  CHECK_FALSE(stuart_maxwell_test({{3, 0}, {0, 4}}));
-  CHECK(stuart_maxwell_test(table_with_a_class_never_answered())->degrees_of_freedom == 2.0);
+  for (const auto test : {symmetry_test, homogeneity_test}) {
+    CHECK(test(padded)->chi_squared == Approx(test(table)->chi_squared).epsilon(1e-9));
+    CHECK(test(padded)->degrees_of_freedom == 1.0);
+    CHECK_FALSE(test({{3, 0}, {0, 4}}));
+    CHECK_FALSE(test({{0, 0}, {0, 0}}));
+  }
+  CHECK(homogeneity_test(table_with_a_class_never_answered())->degrees_of_freedom == 2.0);
+}
+
+TEST_CASE("presenting a class twice as often makes answers no less symmetric",
+          "[analysis][agreement]") {
+  const CountTable symmetric{{60, 20, 20}, {40, 100, 60}, {20, 30, 50}};
+  CHECK(symmetry_test(symmetric)->chi_squared == Approx(0.0).margin(1e-9));
+  CHECK(homogeneity_test(symmetric)->chi_squared == Approx(0.0).margin(1e-9));
 }
 
 TEST_CASE("dependence of answers on stimuli is R's chi-squared test, residuals included",

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "analysis/statistics/quantiles.hpp"
+#include "analysis/statistics/resampling/replicates.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
@@ -124,14 +125,17 @@ std::optional<ToneOfTaps> tone_near(const RepeatedMode& mode,
   ToneOfTaps tone;
   std::vector<double> frequencies_hz;
   std::vector<double> amplitudes;
+  tone.of_taps.resize(stretches.size());
+  parallel_for(stretches.size(), 0, [&](std::size_t i) {
+    if (can_tell(mode, stretches[i])) {
+      tone.of_taps[i] = steady_tone(stretches[i].samples, mode.frequency_hz.value, reach_hz);
+    }
+  });
   std::size_t telling = 0;
-  for (const QuietStretch& stretch : stretches) {
-    const bool tells = can_tell(mode, stretch);
-    telling += tells ? 1 : 0;
-    tone.of_taps.push_back(tells ? steady_tone(stretch.samples, mode.frequency_hz.value, reach_hz)
-                                 : std::nullopt);
-    const auto& known = tone.of_taps.back();
-    tone.errors.push_back(known ? known->error_at(stretch.decay_begins_s) : 0.0);
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    telling += can_tell(mode, stretches[i]) ? 1 : 0;
+    const auto& known = tone.of_taps[i];
+    tone.errors.push_back(known ? known->error_at(stretches[i].decay_begins_s) : 0.0);
     if (known) {
       frequencies_hz.push_back(known->frequency_hz);
       amplitudes.push_back(known->amplitude);

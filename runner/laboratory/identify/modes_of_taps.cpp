@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -17,6 +18,7 @@
 #include "analysis/modal/modes/one_resonance.hpp"
 #include "analysis/modal/modes/steady_tone.hpp"
 #include "analysis/statistics/quantiles.hpp"
+#include "analysis/statistics/resampling/replicates.hpp"
 #include "core/error.hpp"
 namespace tapstudy::runner {
 namespace {
@@ -130,20 +132,44 @@ struct PartOfBand {
   std::vector<analysis::TapModes> modes;
 };
 
+// What a fit of one tap gave, or why there is none.
+struct FitOfTap {
+  std::optional<analysis::TapModes> modes;
+  std::string refusal;
+};
+
+// Taps are fitted on all processors; a fit depends on its tap alone. None where it throws.
+std::vector<FitOfTap> fitted_taps(std::size_t count,
+                                  const std::function<analysis::TapModes(std::size_t)>& fit) {
+  std::vector<FitOfTap> fits(count);
+  analysis::parallel_for(count, 0, [&](std::size_t k) {
+    try {
+      fits[k].modes = fit(k);
+    } catch (const core::InvalidInput& error) {
+      fits[k].refusal = error.what();
+    }
+  });
+  return fits;
+}
+
 PartOfBand identified_in(const analysis::Band& band, const std::vector<IdentifiedTap>& taps,
                          TapRemarks& remarks) {
   PartOfBand part{band, {}, {}, {}, {}};
+  std::vector<analysis::FreeDecay> decays;
+  for (const IdentifiedTap& tap : taps) {
+    decays.push_back(analysis::shortened_for(band, tap.decay));
+  }
+  std::vector<FitOfTap> fits = fitted_taps(
+      taps.size(), [&](std::size_t i) { return analysis::identify_modes(decays[i], band); });
   for (std::size_t i = 0; i < taps.size(); ++i) {
-    analysis::FreeDecay decay = analysis::shortened_for(band, taps[i].decay);
-    try {
-      part.modes.push_back(analysis::identify_modes(decay, band));
-    } catch (const core::InvalidInput& error) {
+    if (!fits[i].modes) {
       remarks.add(taps[i].file,
-                  {taps[i].time_s, fmt::format("left out, {}", error.what()), std::string{}});
+                  {taps[i].time_s, fmt::format("left out, {}", fits[i].refusal), std::string{}});
       continue;
     }
+    part.modes.push_back(std::move(*fits[i].modes));
     part.taps.push_back(i);
-    part.decays.push_back(std::move(decay));
+    part.decays.push_back(std::move(decays[i]));
     part.impacts.push_back(taps[i].impact);
   }
   return part;
@@ -151,24 +177,25 @@ PartOfBand identified_in(const analysis::Band& band, const std::vector<Identifie
 
 void share_lines(const std::vector<IdentifiedTap>& taps, PartOfBand& part, TapRemarks& remarks) {
   const std::vector<analysis::TapModes> alone = part.modes;
-  for (std::size_t k = 0; k < part.taps.size(); ++k) {
-    std::vector<double> lines_hz = analysis::missed_lines(part.modes[k], alone);
+  std::vector<FitOfTap> fits = fitted_taps(part.taps.size(), [&](std::size_t k) {
+    std::vector<double> lines_hz = analysis::missed_lines(alone[k], alone);
     std::ranges::copy_if(taps[part.taps[k]].beside_hz, std::back_inserter(lines_hz),
                          [&, known = lines_hz](double hz) {
                            return part.band.holds(hz) && !analysis::is_among_lines(hz, known);
                          });
-    if (lines_hz.empty()) {
+    return lines_hz.empty() ? alone[k]
+                            : analysis::with_lines(alone[k], part.decays[k], part.band, lines_hz);
+  });
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    if (fits[k].modes) {
+      part.modes[k] = std::move(*fits[k].modes);
       continue;
     }
-    try {
-      part.modes[k] = analysis::with_lines(alone[k], part.decays[k], part.band, lines_hz);
-    } catch (const core::InvalidInput& error) {
-      const IdentifiedTap& tap = taps[part.taps[k]];
-      remarks.add(tap.file, {tap.time_s,
-                             "too short for the steady tones that other taps show: they may "
-                             "falsify its damping",
-                             error.what()});
-    }
+    const IdentifiedTap& tap = taps[part.taps[k]];
+    remarks.add(tap.file, {tap.time_s,
+                           "too short for the steady tones that other taps show: they may falsify "
+                           "its damping",
+                           fits[k].refusal});
   }
 }
 
@@ -192,10 +219,10 @@ void free_from_one_another(std::vector<PartOfBand>& parts) {
     }
   }
   for (PartOfBand& part : parts) {
-    for (std::size_t k = 0; k < part.taps.size(); ++k) {
+    analysis::parallel_for(part.taps.size(), 0, [&](std::size_t k) {
       part.modes[k] =
           analysis::with_lines(part.modes[k], part.decays[k], part.band, part.modes[k].lines_hz);
-    }
+    });
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/techniques/compensated.hpp"
+#include "core/techniques/divided_recording.hpp"
 namespace tapstudy::core {
 std::complex<double> inverse_at(double frequency_hz, const ActuatorResponse& response) {
   const PlaceInResponse place = place_in(response.magnitude, frequency_hz);
@@ -52,6 +53,10 @@ ActuatorVoice make_voice(const Technique& technique, const RenderSettings& setti
         settings.crossover->actuator_share(shape.frequency_hz) * std::abs(by);
     sinusoid.emplace(shape, sample_s, std::arg(by));
   }
-  return {plate, inverse, settings, std::move(sinusoid), sample_s};
+  std::optional<RecordedTransient> recorded;
+  if (technique.has(recorded_transient)) {
+    recorded = recorded_by(RenderedBy::actuator, settings, &response.magnitude, 1.0 / sample_s);
+  }
+  return {plate, inverse, settings, {std::move(sinusoid), std::move(recorded)}, sample_s};
 }
 }  // namespace tapstudy::core

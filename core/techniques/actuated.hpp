@@ -17,8 +17,8 @@ std::complex<double> inverse_at(double frequency_hz, const ActuatorResponse& res
 enum class RenderedBy { device, actuator };
 ModalModel share_of(const ModalModel& model, const Crossover& crossover, RenderedBy by);
 
-// What the actuator renders of a stimulus: its modes and its sinusoid. A recording stays with the
-// device as a whole. settings.crossover must be set. actuated: the actuator's share of the plate's
+// What the actuator renders of a stimulus: its shares of the modes, of the sinusoid and of a
+// recording. settings.crossover must be set. actuated: the actuator's share of the plate's
 // model, null if the technique needs none; must outlive the voice.
 ActuatorVoice make_voice(const Technique& technique, const RenderSettings& settings,
                          const VibratingPlate* actuated, const ActuatorResponse& response,

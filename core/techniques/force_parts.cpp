@@ -1,5 +1,4 @@
-#include "core/techniques/compensated.hpp"
-#include "core/techniques/resampled.hpp"
+#include "core/techniques/divided_recording.hpp"
 #include "core/techniques/technique.hpp"
 #include "core/tick/impact_transients.hpp"
 #include "core/tick/plate_vibration.hpp"
@@ -48,14 +47,7 @@ const ForcePart recorded_transient{
     },
     [](const RenderSettings& settings,
        const VibratingPlate* /*plate*/) -> std::unique_ptr<AddedForce> {
-      std::vector<RecordedTap> taps = settings.recorded_taps->taps;
-      const double rate_hz = 1.0 / settings.dt_s;
-      for (RecordedTap& tap : taps) {
-        tap.force_n = resampled(tap.force_n, settings.recorded_taps->rate_hz, rate_hz);
-        if (settings.device_response) {
-          tap.force_n = compensated(tap.force_n, *settings.device_response, rate_hz);
-        }
-      }
-      return std::make_unique<RecordedTransient>(std::move(taps), settings.vibration_gain);
+      return std::make_unique<RecordedTransient>(recorded_by(
+          RenderedBy::device, settings, settings.device_response.get(), 1.0 / settings.dt_s));
     }};
 }  // namespace tapstudy::core

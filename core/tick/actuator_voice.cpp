@@ -51,9 +51,8 @@ ActuatorTick actuator_tick(const Contact& contact) noexcept {
 
 ActuatorVoice::ActuatorVoice(const VibratingPlate* plate,
                              std::span<const std::complex<double>> inverse,
-                             const RenderSettings& settings,
-                             std::optional<DecayingSinusoid> sinusoid, double sample_s)
-    : plate_{plate}, mass_kg_{settings.finger.mass_kg}, sinusoid_{std::move(sinusoid)} {
+                             const RenderSettings& settings, Transients transients, double sample_s)
+    : plate_{plate}, mass_kg_{settings.finger.mass_kg}, transients_{std::move(transients)} {
   const Eigen::Index modes = plate == nullptr ? 0 : plate->model.frequency_hz.size();
   for (Eigen::ArrayXd* array : {&qq_, &qv_, &vq_, &vv_, &of_displacement_, &of_velocity_,
                                 &displacement_, &velocity_, &before_, &touched_, &aim_, &step_}) {
@@ -83,9 +82,7 @@ void ActuatorVoice::advance() noexcept {
     flush(velocity_);
     since_flush_ = 0;
   }
-  if (sinusoid_) {
-    sinusoid_->advance(1);
-  }
+  with_transients([](AddedForce& transient) { transient.advance(1); });
   if (left_ > 0) {
     touched_ += step_;
     share_ = --left_ == 0 ? share_aim_ : share_ + share_step_;
@@ -106,9 +103,7 @@ void ActuatorVoice::begin(const ActuatorTick& tick, int samples) noexcept {
   if (plate_ != nullptr) {
     modes_along(plate_->model, plate_->place_of(contact), contact.normal, aim_);
   }
-  if (sinusoid_) {
-    sinusoid_->touch(contact);
-  }
+  with_transients([&](AddedForce& transient) { transient.touch(contact); });
   if (!was_touching) {
     touched_ = aim_;
     share_ = tick.passed_share;
@@ -117,9 +112,7 @@ void ActuatorVoice::begin(const ActuatorTick& tick, int samples) noexcept {
   step_ = (aim_ - touched_) / samples;
   if (tick.impact) {
     velocity_ -= mass_kg_ * tick.impact_speed_m_s * aim_;  // eq. 14, 15
-    if (sinusoid_) {
-      sinusoid_->impact(tick.impact_speed_m_s);
-    }
+    with_transients([&](AddedForce& transient) { transient.impact(tick.impact_speed_m_s); });
   }
 }
 
@@ -132,12 +125,15 @@ void ActuatorVoice::pass(double share, int samples) noexcept {
 
 double ActuatorVoice::force_n() const noexcept {
   ForceParts parts;
-  if (sinusoid_) {
-    sinusoid_->add_to(parts);
+  if (transients_.sinusoid) {
+    transients_.sinusoid->add_to(parts);
+  }
+  if (transients_.recorded) {
+    transients_.recorded->add_to(parts);
   }
   const double vibration_n =
       (touched_ * (of_displacement_ * displacement_ + of_velocity_ * velocity_)).sum();
-  return share_ * (vibration_n + parts.sinusoid_n);
+  return share_ * (vibration_n + parts.vibration_n + parts.sinusoid_n);
 }
 
 void ActuatorVoice::reset() noexcept {
@@ -145,9 +141,7 @@ void ActuatorVoice::reset() noexcept {
   velocity_.setZero();
   touched_.setZero();
   step_.setZero();
-  if (sinusoid_) {
-    sinusoid_->reset();
-  }
+  with_transients([](AddedForce& transient) { transient.reset(); });
   share_ = share_step_ = share_aim_ = 0.0;
   left_ = 0;
   is_touching_ = false;

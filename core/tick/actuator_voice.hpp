@@ -31,8 +31,9 @@ static_assert(std::is_trivially_copyable_v<ActuatorTick>);
 ActuatorTick actuator_tick(const Contact& contact) noexcept;
 
 // A stimulus's vibration as the actuator renders it, sample by sample at audio rate: the law of
-// PlateVibration and DecayingSinusoid (paper eq. 11 and 14 to 17), each mode exact at its own
-// samples, so that the waveform is that of the closed form whatever the rate of the loop.
+// PlateVibration, DecayingSinusoid and RecordedTransient (paper eq. 11 and 14 to 17), each mode
+// exact at its own samples, so that the waveform is that of the closed form whatever the rate of
+// the loop.
 //
 // Between two ticks the place that is touched moves on evenly: the modes' weights are interpolated,
 // and a finger that slides is not heard in steps of the loop. A contact begins at once, with its
@@ -43,11 +44,15 @@ ActuatorTick actuator_tick(const Contact& contact) noexcept;
 // modes of k u + b u' is then as easily made as without.
 class ActuatorVoice {
  public:
+  // What begins anew at each impact, at the rate of the samples.
+  struct Transients {
+    std::optional<DecayingSinusoid> sinusoid{};
+    std::optional<RecordedTransient> recorded{};
+  };
   // plate: the actuator's share of the modes; nullptr if there are none. It must outlive the voice.
   // inverse: the actuator's inverse response at each of them.
   ActuatorVoice(const VibratingPlate* plate, std::span<const std::complex<double>> inverse,
-                const RenderSettings& settings, std::optional<DecayingSinusoid> sinusoid,
-                double sample_s);
+                const RenderSettings& settings, Transients transients, double sample_s);
   // One sample later. Then, where a tick begins at this sample, begin(); then force_n().
   void advance() noexcept;
   // samples: until the next tick, >= 1.
@@ -60,6 +65,16 @@ class ActuatorVoice {
 
  private:
   void pass(double share, int samples) noexcept;
+  // Calls what(transient) for each that there is.
+  template <class What>
+  void with_transients(const What& what) noexcept {
+    if (transients_.sinusoid) {
+      what(*transients_.sinusoid);
+    }
+    if (transients_.recorded) {
+      what(*transients_.recorded);
+    }
+  }
 
   const VibratingPlate* plate_;
   double mass_kg_;
@@ -67,7 +82,7 @@ class ActuatorVoice {
   Eigen::ArrayXd of_displacement_, of_velocity_;  // force per unit of a mode's state
   Eigen::ArrayXd displacement_, velocity_, before_;
   Eigen::ArrayXd touched_, aim_, step_;  // the touched point's displacement along the normal
-  std::optional<DecayingSinusoid> sinusoid_;
+  Transients transients_;
   double share_{0.0};
   double share_step_{0.0};
   double share_aim_{0.0};

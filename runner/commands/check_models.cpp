@@ -248,9 +248,12 @@ void print_divided_modes(const protocols::Protocol& protocol, ModelLibrary& mode
   if (!crossover) {
     return;
   }
-  fmt::print("\nmodes rendered by the device below {} Hz, by the actuator above {} Hz:\n",
+  fmt::print("\nrendered by the device below {} Hz, by the actuator above {} Hz:\n",
              crossover->low_hz, crossover->high_hz);
   for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (stimulus.technique->has(core::recorded_transient)) {
+      fmt::print("  {}: its recording, by frequency\n", stimulus.name);
+    }
     if (!stimulus.technique->needs_model()) {
       continue;
     }
@@ -262,8 +265,8 @@ void print_divided_modes(const protocols::Protocol& protocol, ModelLibrary& mode
       const double share = device_share(protocol, frequency_hz);
       ++(share == 1.0 ? device : share == 0.0 ? actuator : both);
     }
-    fmt::print("  {}: {} by the device, {} by the actuator, {} by both\n", stimulus.name, device,
-               actuator, both);
+    fmt::print("  {}: modes: {} by the device, {} by the actuator, {} by both\n", stimulus.name,
+               device, actuator, both);
   }
 }
 

@@ -125,6 +125,46 @@ TEST_CASE("what device and actuator render of a sinusoid adds up to the undivide
   CHECK(std::abs(device_n[20]) > 0.01);
 }
 
+TEST_CASE("what device and actuator render of a recording adds up to the undivided one",
+          "[core][actuator][recorded]") {
+  const Technique& technique = *find_technique("recorded");
+  RenderSettings divided = divided_at(1.0 / audio_rate_hz);
+  RecordedTap tap;
+  tap.speed_m_s = 2.0 * tapped_m_s;
+  for (int i = 0; i < 4800; ++i) {
+    const double t_s = i / audio_rate_hz;
+    tap.force_n.push_back(std::exp(-40.0 * t_s) * (std::cos(2.0 * std::numbers::pi * 90.0 * t_s) +
+                                                   std::sin(2.0 * std::numbers::pi * 900.0 * t_s)));
+  }
+  divided.recorded_taps = std::make_shared<const RecordedTaps>(RecordedTaps{audio_rate_hz, {tap}});
+  RenderSettings undivided = divided;
+  undivided.crossover.reset();
+  constexpr int samples = 4800;
+  const auto all_n = forces_of(*recorded_transient.make(undivided, nullptr), samples);
+  const auto device_n = forces_of(*recorded_transient.make(divided, nullptr), samples);
+  ActuatorVoice actuator =
+      make_voice(technique, divided, nullptr, ActuatorResponse::flat(), divided.dt_s);
+  const auto actuator_n = forces_of(actuator, samples);
+  double worst_n = 0.0;
+  double low_n = 0.0;
+  double high_n = 0.0;
+  for (std::size_t i = 0; i < all_n.size(); ++i) {
+    worst_n = std::max(worst_n, std::abs(device_n[i] + actuator_n[i] - all_n[i]));
+    const double t_s = static_cast<double>(i) / audio_rate_hz;
+    const double fall = 0.5 * std::exp(-40.0 * t_s);  // half of the recording's speed
+    const bool is_inside = t_s > 0.01 && t_s < 0.09;  // beyond the filter's ringing at the ends
+    low_n = std::max(low_n, is_inside ? std::abs(device_n[i] / fall -
+                                                 std::cos(2.0 * std::numbers::pi * 90.0 * t_s))
+                                      : 0.0);
+    high_n = std::max(high_n, is_inside ? std::abs(actuator_n[i] / fall -
+                                                   std::sin(2.0 * std::numbers::pi * 900.0 * t_s))
+                                        : 0.0);
+  }
+  CHECK(worst_n < 1e-12);
+  CHECK(low_n < 0.05);
+  CHECK(high_n < 0.05);
+}
+
 TEST_CASE("every sample of the actuator is that of the closed form", "[core][actuator]") {
   const double hz = 1900.0;
   const double damping_ratio = 0.004;

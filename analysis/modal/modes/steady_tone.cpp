@@ -72,7 +72,8 @@ bool is_long_enough(const FreeDecay& stretch, double near_hz) {
 }
 }  // namespace
 
-std::optional<SteadyTone> steady_tone(const FreeDecay& stretch, double near_hz, double reach_hz) {
+std::optional<SteadyTone> steady_tone(const FreeDecay& stretch, double near_hz, double reach_hz,
+                                      double struck_s) {
   if (!is_long_enough(stretch, near_hz)) {
     return std::nullopt;
   }
@@ -86,7 +87,7 @@ std::optional<SteadyTone> steady_tone(const FreeDecay& stretch, double near_hz, 
     for (const TapMode& mode : identify_modes(centred, near).modes) {
       const FittedMode& fitted = mode.fitted;
       if (std::abs(fitted.pole.frequency_hz - near_hz) <= reach_hz &&
-          is_known_steady(fitted, stretch.duration_s()) &&
+          is_known_steady(fitted, struck_s + stretch.duration_s()) &&
           (!strongest || fitted.amplitude > strongest->amplitude)) {
         strongest = tone_of(fitted, stretch.duration_s());
       }
@@ -128,7 +129,8 @@ std::optional<ToneOfTaps> tone_near(const RepeatedMode& mode,
   tone.of_taps.resize(stretches.size());
   parallel_for(stretches.size(), 0, [&](std::size_t i) {
     if (can_tell(mode, stretches[i])) {
-      tone.of_taps[i] = steady_tone(stretches[i].samples, mode.frequency_hz.value, reach_hz);
+      tone.of_taps[i] = steady_tone(stretches[i].samples, mode.frequency_hz.value, reach_hz,
+                                    stretches[i].struck_s);
     }
   });
   std::size_t telling = 0;

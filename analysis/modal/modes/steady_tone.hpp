@@ -18,10 +18,12 @@ struct SteadyTone {
 };
 
 // The strongest tone within reach of a frequency, 8 standard errors above what else is there, and
-// known to fall or rise by no more than a third over the stretch; unset if there is none, or if
-// the stretch is shorter than shortest_stretch_s or ten periods.
+// known to fall or rise by no more than a third over the stretch and what has passed since the last
+// blow before it, of which a mode may still ring (struck_s; 0: there was none); unset if there is
+// none, or if the stretch is shorter than shortest_stretch_s or ten periods.
 inline constexpr double shortest_stretch_s = 0.15;
-std::optional<SteadyTone> steady_tone(const FreeDecay& stretch, double near_hz, double reach_hz);
+std::optional<SteadyTone> steady_tone(const FreeDecay& stretch, double near_hz, double reach_hz,
+                                      double struck_s = 0.0);
 
 // Samples that begin so long after the stretch, without the tone.
 void take_tone(const SteadyTone& tone, double begins_s, FreeDecay& decay);
@@ -35,6 +37,7 @@ double tone_reach_hz(const RepeatedMode& mode, double decay_s);
 struct QuietStretch {
   FreeDecay samples;
   double decay_begins_s{};
+  double struck_s{};  // from the last blow before the stretch to its first sample; 0: none
 };
 
 // One tone near a mode, tap by tap; unset where a tap's stretch does not show it.

@@ -10,12 +10,15 @@
 
 #include "analysis/modal/decay/decay_model.hpp"
 #include "analysis/modal/decay/pole_estimation.hpp"
+#include "analysis/modal/modes/mode_kinds.hpp"
+#include "analysis/modal/modes/steady_tone.hpp"
 #include "core/error.hpp"
 namespace tapstudy::analysis {
 namespace {
 constexpr double max_ratio = 0.7;
-// The fall of a tone within the tap, in nepers. Below steady_fall it is steady or drifts; below the
-// second limit the fall must be significant, and the frequency no harmonic of the mains.
+// The fall of a tone within the tap, in nepers. Below steady_fall it is steady or drifts, and below
+// the second limit hum at a harmonic of the mains, unless nothing is there at rest; the fall must
+// be significant.
 constexpr double steady_fall = 0.15;
 constexpr double plain_fall = 0.5;
 constexpr double min_decay_z = 2.0;
@@ -181,13 +184,23 @@ double decay_per_s(const FittedMode& mode) {
   return mode.pole.damping_ratio * 2.0 * std::numbers::pi * mode.pole.frequency_hz;
 }
 
-bool is_line(const FittedMode& mode, double duration_s) {
+// Of hum, which is there before the tap as well. The amplitude at rest is of a whole neighbourhood.
+bool is_silent_at_rest(const FittedMode& mode, double duration_s, const FreeDecay& rest) {
+  constexpr double share_of_hum = 0.3;
+  const double least = mode.amplitude * std::exp(-decay_per_s(mode) * duration_s);
+  const double hz = mode.pole.frequency_hz;
+  return rest.samples.size() > 0 && rest.duration_s() >= shortest_stretch_s &&
+         rest.duration_s() * hz >= min_periods && amplitude_at(hz, rest) < share_of_hum * least;
+}
+
+bool is_line(const FittedMode& mode, double duration_s, const FreeDecay& rest) {
   const double fall = decay_per_s(mode) * duration_s;
   const double z = decay_per_s(mode) / mode.decay_error_per_s;
   if (fall >= plain_fall) {
     return z < min_decay_z;
   }
-  return fall < steady_fall || z < min_slow_decay_z || !hum_at(mode).empty();
+  const bool may_be_steady = fall < steady_fall || !hum_at(mode).empty();
+  return z < min_slow_decay_z || (may_be_steady && !is_silent_at_rest(mode, duration_s, rest));
 }
 
 bool grows(const FittedMode& mode, double duration_s) {
@@ -195,14 +208,15 @@ bool grows(const FittedMode& mode, double duration_s) {
          decay_per_s(mode) < -min_slow_decay_z * mode.decay_error_per_s;
 }
 
-TapMode judged(const FittedMode& fitted, const Candidate& candidate, double duration_s) {
+TapMode judged(const FittedMode& fitted, const Candidate& candidate, double duration_s,
+               const FreeDecay& rest) {
   TapMode mode{fitted, Standing::agreed, {}, candidate.by_rational_fit, candidate.stable_orders};
   if (grows(fitted, duration_s)) {
     mode.standing = Standing::doubtful;
     mode.why = "grows: no free decay";
-  } else if (is_line(fitted, duration_s)) {
+  } else if (is_line(fitted, duration_s, rest)) {
     mode.standing = Standing::line;
-    mode.why = hum_at(fitted);
+    mode.why = is_silent_at_rest(fitted, duration_s, rest) ? "" : hum_at(fitted);
     if (mode.why.empty()) {
       mode.why = "hardly decays within the tap: a steady tone, or a mode that takes --longest";
     }
@@ -249,11 +263,11 @@ Band somewhat_wider(const Band& band, double rate_hz) {
 }
 
 void judge(const std::vector<Candidate>& candidates, const Band& band, double duration_s,
-           TapModes& result) {
+           const FreeDecay& rest, TapModes& result) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const FittedMode& fitted = result.fit.modes[i];
     if (band.holds(fitted.pole.frequency_hz)) {
-      result.modes.push_back(judged(fitted, candidates[i], duration_s));
+      result.modes.push_back(judged(fitted, candidates[i], duration_s, rest));
     }
   }
   std::ranges::sort(result.modes, {},
@@ -261,7 +275,7 @@ void judge(const std::vector<Candidate>& candidates, const Band& band, double du
 }
 }  // namespace
 
-TapModes identify_modes(const FreeDecay& decay, const Band& band) {
+TapModes identify_modes(const FreeDecay& decay, const Band& band, const FreeDecay& rest) {
   const Band wide = somewhat_wider(band, decay.rate_hz);
   TapModes result;
   result.pencil = matrix_pencil(decay, wide, max_model_order);
@@ -285,12 +299,12 @@ TapModes identify_modes(const FreeDecay& decay, const Band& band) {
     }
     result.fit = fit_significant(result.spectrum, wide, {}, candidates);
   }
-  judge(candidates, band, decay.duration_s(), result);
+  judge(candidates, band, decay.duration_s(), rest, result);
   return result;
 }
 
 TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& band,
-                    const std::vector<double>& lines_hz) {
+                    const std::vector<double>& lines_hz, const FreeDecay& rest) {
   TapModes result = before;
   const Band wide = somewhat_wider(band, decay.rate_hz);
   result.spectrum = band_spectrum(decay, wide);
@@ -313,7 +327,7 @@ TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& 
     throw core::InvalidInput{"a decay is too short for so many modes and lines"};
   }
   result.fit = fit_significant(result.spectrum, wide, lines_hz, candidates);
-  judge(candidates, band, decay.duration_s(), result);
+  judge(candidates, band, decay.duration_s(), rest, result);
   return result;
 }
 

@@ -36,15 +36,16 @@ struct TapModes {
 // felt inside; poles whose amplitude is not significant (chi-squared below 25) are dropped, the
 // weakest first. A remaining mode is agreed if both methods found it: frequencies within 1 % (a
 // sixth of the half-power bandwidth or four standard errors if that is more), damping ratios within
-// a quarter (or 0.003, or four standard errors). What falls by less than 14 % over the tap, or not
-// significantly, is a line; by less than 40 %, also where a harmonic of the mains is. Throws
+// a quarter (or 0.003, or four standard errors). What does not fall significantly over the tap is
+// a line. So is what falls by less than 14 %, or by less than 40 % at a harmonic of the mains,
+// unless the sensor shows nothing there at rest (rest: before the tap; empty: not known). Throws
 // InvalidInput for decays that are too short.
-TapModes identify_modes(const FreeDecay& decay, const Band& band);
+TapModes identify_modes(const FreeDecay& decay, const Band& band, const FreeDecay& rest = {});
 
 // The same tap's modes fitted again, to a decay that may have been freed from others, beside steady
 // tones. Throws InvalidInput for a decay too short for that.
 TapModes with_lines(const TapModes& before, const FreeDecay& decay, const Band& band,
-                    const std::vector<double>& lines_hz);
+                    const std::vector<double>& lines_hz, const FreeDecay& rest = {});
 
 // A decay without what the fit says of these modes of its tap. What a mode leaves in another part
 // of a band is smooth there, but no polynomial: it would be felt in the damping of modes there.

@@ -105,17 +105,20 @@ class Hdf5Arrays {
     }
     add_attributes(group.get(), name);
     for (hsize_t i = 0; i < info.nlinks; ++i) {
-      const std::string own = name_at(group.get(), i);
-      const Handle object{H5Oopen(group.get(), own.c_str(), H5P_DEFAULT), H5Oclose};
-      const std::string path = name.empty() ? own : name + '/' + own;
-      const H5I_type_t kind = object.is_valid() ? H5Iget_type(object.get()) : H5I_BADID;
-      if (kind == H5I_GROUP) {
-        add_group(path);
-      } else if (kind == H5I_DATASET) {
-        // Octave has a group of each variable, with its type and value
-        const bool is_octave = own == "value" && H5Lexists(group.get(), "type", H5P_DEFAULT) > 0;
-        add_data_set(object.get(), path, is_octave && !name.empty() ? name : path);
-      }
+      add_object(group.get(), name, name_at(group.get(), i));
+    }
+  }
+
+  void add_object(hid_t group, const std::string& group_name, const std::string& own) {
+    const Handle object{H5Oopen(group, own.c_str(), H5P_DEFAULT), H5Oclose};
+    const std::string path = group_name.empty() ? own : group_name + '/' + own;
+    const H5I_type_t kind = object.is_valid() ? H5Iget_type(object.get()) : H5I_BADID;
+    if (kind == H5I_GROUP) {
+      add_group(path);
+    } else if (kind == H5I_DATASET) {
+      // Octave has a group of each variable, with its type and value
+      const bool is_octave = own == "value" && H5Lexists(group, "type", H5P_DEFAULT) > 0;
+      add_data_set(object.get(), path, is_octave && !group_name.empty() ? group_name : path);
     }
   }
 

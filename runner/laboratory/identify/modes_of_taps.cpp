@@ -152,6 +152,21 @@ std::vector<FitOfTap> fitted_taps(std::size_t count,
   return fits;
 }
 
+// What the tap's sensor shows at rest: before the tap, or where that is short before another one.
+const analysis::FreeDecay& silence_of(const IdentifiedTap& tap,
+                                      const std::vector<IdentifiedTap>& taps) {
+  const IdentifiedTap* longest = &tap;
+  for (const IdentifiedTap& other : taps) {
+    const bool is_short = longest->rest.samples.size() == 0 ||
+                          longest->rest.duration_s() < analysis::shortest_stretch_s;
+    if (is_short && other.file == tap.file && other.channel == tap.channel &&
+        other.rest.samples.size() > longest->rest.samples.size()) {
+      longest = &other;
+    }
+  }
+  return longest->rest;
+}
+
 PartOfBand identified_in(const analysis::Band& band, const std::vector<IdentifiedTap>& taps,
                          TapRemarks& remarks) {
   PartOfBand part{band, {}, {}, {}, {}};
@@ -159,8 +174,9 @@ PartOfBand identified_in(const analysis::Band& band, const std::vector<Identifie
   for (const IdentifiedTap& tap : taps) {
     decays.push_back(analysis::shortened_for(band, tap.decay));
   }
-  std::vector<FitOfTap> fits = fitted_taps(
-      taps.size(), [&](std::size_t i) { return analysis::identify_modes(decays[i], band); });
+  std::vector<FitOfTap> fits = fitted_taps(taps.size(), [&](std::size_t i) {
+    return analysis::identify_modes(decays[i], band, silence_of(taps[i], taps));
+  });
   for (std::size_t i = 0; i < taps.size(); ++i) {
     if (!fits[i].modes) {
       remarks.add(taps[i].file,
@@ -184,7 +200,8 @@ void share_lines(const std::vector<IdentifiedTap>& taps, PartOfBand& part, TapRe
                            return part.band.holds(hz) && !analysis::is_among_lines(hz, known);
                          });
     return lines_hz.empty() ? alone[k]
-                            : analysis::with_lines(alone[k], part.decays[k], part.band, lines_hz);
+                            : analysis::with_lines(alone[k], part.decays[k], part.band, lines_hz,
+                                                   silence_of(taps[part.taps[k]], taps));
   });
   for (std::size_t k = 0; k < fits.size(); ++k) {
     if (fits[k].modes) {
@@ -210,7 +227,7 @@ void take_modes(const PartOfBand& part, std::size_t tap, analysis::FreeDecay& de
 
 // The modes that each part found alone are taken from the decays of all others, whose own are then
 // fitted again.
-void free_from_one_another(std::vector<PartOfBand>& parts) {
+void free_from_one_another(const std::vector<IdentifiedTap>& taps, std::vector<PartOfBand>& parts) {
   for (PartOfBand& part : parts) {
     for (const PartOfBand& other : parts) {
       for (std::size_t k = 0; &other != &part && k < part.taps.size(); ++k) {
@@ -221,7 +238,8 @@ void free_from_one_another(std::vector<PartOfBand>& parts) {
   for (PartOfBand& part : parts) {
     analysis::parallel_for(part.taps.size(), 0, [&](std::size_t k) {
       part.modes[k] =
-          analysis::with_lines(part.modes[k], part.decays[k], part.band, part.modes[k].lines_hz);
+          analysis::with_lines(part.modes[k], part.decays[k], part.band, part.modes[k].lines_hz,
+                               silence_of(taps[part.taps[k]], taps));
     });
   }
 }
@@ -239,7 +257,7 @@ analysis::ModesOfTaps found_in_parts(const analysis::Band& band, std::vector<Ide
     }
   }
   if (parts.size() > 1) {
-    free_from_one_another(parts);
+    free_from_one_another(taps, parts);
   }
   analysis::ModesOfTaps found{{}, {}, taken_hz};
   for (const PartOfBand& part : parts) {
@@ -427,7 +445,7 @@ double decay_begins_s(const IdentifiedTap& tap) {
 std::vector<analysis::QuietStretch> stretches_of(const std::vector<IdentifiedTap>& taps) {
   std::vector<analysis::QuietStretch> stretches;
   for (const IdentifiedTap& tap : taps) {
-    stretches.push_back({tap.quiet, decay_begins_s(tap)});
+    stretches.push_back({tap.quiet, decay_begins_s(tap), tap.struck_s});
   }
   return stretches;
 }
@@ -448,10 +466,103 @@ void take_out(const std::vector<analysis::ToneOfTaps>& tones, std::vector<Identi
 }
 }  // namespace
 
+namespace {
+double peak_of(const IdentifiedTap& tap) {
+  return tap.whole.samples.cwiseAbs().maxCoeff();
+}
+
+// The hardest tap that the same channel shows.
+std::size_t hardest_beside(const IdentifiedTap& tap, const std::vector<IdentifiedTap>& taps) {
+  std::size_t hardest = taps.size();
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    if (taps[i].channel == tap.channel &&
+        (hardest == taps.size() || peak_of(taps[i]) > peak_of(taps[hardest]))) {
+      hardest = i;
+    }
+  }
+  return hardest;
+}
+
+bool share_a_mode(const std::vector<analysis::FittedMode>& ones,
+                  const std::vector<analysis::FittedMode>& others) {
+  constexpr double least_share = 0.1;  // of the strongest
+  constexpr double same = 0.01;
+  double strongest = 0.0;
+  for (const analysis::FittedMode& other : others) {
+    strongest = std::max(strongest, other.amplitude);
+  }
+  return std::ranges::any_of(ones, [&](const analysis::FittedMode& one) {
+    return std::ranges::any_of(others, [&](const analysis::FittedMode& other) {
+      return other.amplitude >= least_share * strongest &&
+             std::abs(one.pole.frequency_hz / other.pole.frequency_hz - 1.0) <= same;
+    });
+  });
+}
+
+std::vector<std::vector<analysis::FittedMode>> modes_of_each(
+    const analysis::Band& band, const std::vector<IdentifiedTap>& taps) {
+  std::vector<std::vector<analysis::FittedMode>> modes(taps.size());
+  for (const analysis::Band& of_part : analysis::parts_of(band, decays_of(taps))) {
+    TapRemarks unused;
+    const PartOfBand part = identified_in(of_part, taps, unused);
+    for (std::size_t k = 0; k < part.taps.size(); ++k) {
+      for (const analysis::TapMode& mode : part.modes[k].modes) {
+        if (mode.standing != analysis::Standing::line) {
+          modes[part.taps[k]].push_back(mode.fitted);
+        }
+      }
+    }
+  }
+  return modes;
+}
+
+// What is weak and shares no mode with the hardest tap was no tap of this body: a step nearby, a
+// rumble. Unless most are so: then it is the hardest that was none.
+void leave_out_strangers(const analysis::Band& band, std::vector<IdentifiedTap>& taps,
+                         TapRemarks& remarks) {
+  constexpr double weak = 0.2;
+  std::vector<std::size_t> hardest;
+  std::set<int> weak_impacts = [&] {
+    const std::vector<int> all = impacts_of(taps);
+    return std::set<int>{all.begin(), all.end()};
+  }();
+  for (const IdentifiedTap& tap : taps) {
+    hardest.push_back(hardest_beside(tap, taps));
+    if (peak_of(tap) >= weak * peak_of(taps[hardest.back()])) {
+      weak_impacts.erase(tap.impact);
+    }
+  }
+  if (weak_impacts.empty()) {
+    return;
+  }
+  const auto modes = modes_of_each(band, taps);
+  std::set<int> strange = weak_impacts;
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    if (share_a_mode(modes[i], modes[hardest[i]])) {
+      strange.erase(taps[i].impact);
+    }
+  }
+  const std::vector<int> impacts = impacts_of(taps);
+  if (2 * strange.size() > std::set<int>{impacts.begin(), impacts.end()}.size()) {
+    return;
+  }
+  for (std::size_t i = 0; i < taps.size(); ++i) {
+    if (strange.contains(taps[i].impact)) {
+      remarks.add(
+          taps[i].file,
+          {taps[i].time_s, "left out, it is weak and shares no mode with the hardest tap",
+           fmt::format("{:.0f} times weaker", peak_of(taps[hardest[i]]) / peak_of(taps[i]))});
+    }
+  }
+  std::erase_if(taps, [&](const IdentifiedTap& tap) { return strange.contains(tap.impact); });
+}
+}  // namespace
+
 std::vector<analysis::RepeatedMode> modes_over_all(const analysis::Band& band,
                                                    std::vector<IdentifiedTap>& taps,
                                                    analysis::Quantity quantity,
                                                    TapRemarks& remarks) {
+  leave_out_strangers(band, taps, remarks);
   std::vector<IdentifiedTap> as_recorded = taps;
   TapRemarks of_recorded = remarks;
   std::vector<analysis::RepeatedMode> modes = modes_beside({}, band, taps, quantity, of_recorded);

@@ -165,7 +165,7 @@ class Identifier {
     }
     std::vector<ChannelState> states;
     std::ranges::transform(file.channels, std::back_inserter(states), state_of);
-    std::size_t rests_from = 0;
+    const analysis::Tap* before_it = nullptr;
     for (std::size_t k = 0; k < found.taps.size(); ++k) {
       const analysis::Tap& tap = found.taps[k];
       const std::size_t next = k + 1 < found.taps.size() ? found.taps[k + 1].onset
@@ -179,18 +179,18 @@ class Identifier {
         if (add(file.channels[i], states[i], tap)) {
           result_.taps.back().impact = before + tap.impact;
           result_.taps.back().force = force;
-          give_rest(file.channels[i], rests_from, next, result_.taps.back());
+          give_rest(file.channels[i], before_it, next, result_.taps.back());
         }
       }
-      rests_from = tap.end;
+      before_it = &tap;
     }
     return found.impacts;
   }
 
-  // At most half a second of what is around a tap: [from, its onset) and [its end, next), but for
-  // what may be the beginning of an impact.
-  static void give_rest(const analysis::Recording& recording, std::size_t from, std::size_t next,
-                        IdentifiedTap& one) {
+  // At most half a second of what is around a tap: since the end of the one before, and from its
+  // own until the next, but for what may be the beginning of an impact.
+  static void give_rest(const analysis::Recording& recording, const analysis::Tap* before,
+                        std::size_t next, IdentifiedTap& one) {
     constexpr double longest_s = 0.5;
     constexpr double guard_s = 0.005;
     const auto samples = [&](double s) { return static_cast<std::size_t>(s * recording.rate_hz); };
@@ -198,15 +198,20 @@ class Identifier {
       return impact - std::min(impact, samples(guard_s));
     };
     const std::size_t end = guarded(one.tap.onset);
-    const std::size_t begin =
-        std::min(end, std::max(from, end - std::min(end, samples(longest_s))));
+    const std::size_t begin = std::min(end, std::max(before == nullptr ? 0 : before->end,
+                                                     end - std::min(end, samples(longest_s))));
     one.rest = between(recording, begin, end);
     const std::size_t after =
         std::clamp(guarded(next), one.tap.end, one.tap.end + samples(longest_s));
     const bool is_before =
         one.rest.duration_s() >= analysis::shortest_stretch_s || end - begin >= after - one.tap.end;
     one.quiet = is_before ? one.rest : between(recording, one.tap.end, after);
-    one.quiet_s = static_cast<double>(is_before ? begin : one.tap.end) / recording.rate_hz;
+    const std::size_t quiet_from = is_before ? begin : one.tap.end;
+    const analysis::Tap* const struck = is_before ? before : &one.tap;
+    one.quiet_s = static_cast<double>(quiet_from) / recording.rate_hz;
+    one.struck_s = struck == nullptr
+                       ? 0.0
+                       : static_cast<double>(quiet_from - struck->onset) / recording.rate_hz;
   }
 
   // A channel that shows nothing is left out with a remark.

@@ -49,6 +49,7 @@ struct IdentifiedTap {
   analysis::FreeDecay rest;       // before the impact, since the tap before; may be empty
   analysis::FreeDecay quiet;      // that, or where it is short what follows the decay
   double quiet_s{};               // when it begins
+  double struck_s{};              // and how long after the last blow before it; 0: none was
   std::vector<double> beside_hz;  // steady tones that are fitted beside its modes
   analysis::TapModes modes;
   std::optional<analysis::FittedSinusoid> sinusoid;  // none of clipped ones

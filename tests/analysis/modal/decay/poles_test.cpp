@@ -236,6 +236,34 @@ TEST_CASE("a decay that is too short for the band is refused with the length it 
   CHECK_THROWS_AS(identify_modes(decay, band), core::InvalidInput);
 }
 
+TEST_CASE("a mode at a harmonic of the mains is no hum where the sensor is silent at rest",
+          "[analysis][modal]") {
+  core::Rng rng{3};
+  // it falls by a third
+  FreeDecay decay =
+      testing::planted_decay({{{1000.0, 3e-4}, 1.0}, {{700.0, 0.01}, 0.5}}, 8000.0, 0.2);
+  const double noise = testing::add_noise(decay, 40.0, rng);
+  const auto rest_of = [&](double hum) {
+    FreeDecay rest = testing::planted_decay({{{1000.0, 0.0}, hum}}, 8000.0, 0.3);
+    for (double& sample : rest.samples) {
+      sample += noise * rng.normal();
+    }
+    return rest;
+  };
+  const auto standing_of = [&](const FreeDecay& rest) {
+    const TapModes tap = identify_modes(decay, {500.0, 1500.0}, rest);
+    return mode_near(tap, 1000.0)->standing;
+  };
+  CHECK(standing_of(rest_of(0.0)) == Standing::agreed);
+  CHECK(standing_of(rest_of(1.0)) == Standing::line);
+  CHECK(standing_of({}) == Standing::line);  // nobody knows
+  FreeDecay steady =
+      testing::planted_decay({{{1000.0, 0.0}, 1.0}, {{700.0, 0.01}, 0.5}}, 8000.0, 0.2);
+  testing::add_noise(steady, 40.0, rng);
+  const TapModes tap = identify_modes(steady, {500.0, 1500.0}, rest_of(0.0));
+  CHECK(mode_near(tap, 1000.0)->standing == Standing::line);  // begun by whatever
+}
+
 TEST_CASE("hum beside a mode falsifies its damping until another tap tells of it",
           "[analysis][modal]") {
   const std::vector<PlantedMode> with_hum{{{48.3, 0.055}, 1.0}, {{50.0, 0.0}, 0.03, 0.7}};

@@ -882,6 +882,16 @@ TEST_CASE("what decays, and noise, is no steady tone", "[analysis][modal]") {
   CHECK_FALSE(tone_near(certain_mode(humming_hz, 0.001, 1.0), {{hum, 0.6}}, 2.0));
 }
 
+TEST_CASE("what may still ring of the last blow is no steady tone", "[analysis][modal]") {
+  core::Rng rng{7};
+  FreeDecay stretch = testing::planted_decay({{{793.9, 1.2e-4}, 1.0}}, 4000.0, 0.5);
+  testing::add_noise(stretch, 40.0, rng);
+  CHECK(steady_tone(stretch, 793.9, 2.0));  // falls by a quarter within it
+  CHECK_FALSE(steady_tone(stretch, 793.9, 2.0, 2.0));
+  const FreeDecay hum = hum_from(0.3, 0.5, 0.15, 0.0, rng);
+  CHECK(steady_tone(hum, humming_hz, 2.0, 2.0));
+}
+
 TEST_CASE("a mode beside a tone that few taps know is known less well", "[analysis][modal]") {
   core::Rng rng{7};
   const FreeDecay hum = hum_from(0.1, 0.5, 0.05, 0.0, rng);

@@ -481,3 +481,14 @@ TEST_CASE("what rings for seconds, beats, or has a hundred modes is a tap",
     CHECK(find_taps(recording, {}).impacts >= 3);  // a sudden stop may look like one
   }
 }
+
+TEST_CASE("a body that rings for nearly all of a recording is found by the silence before its blow",
+          "[analysis][recordings]") {
+  const double duration_s = GENERATE(4.5, 6.5, 24.5);
+  const Recording recording = testing::planted_recording(
+      {{{441.7, 1e-4}, 1.0}, {{2756.0, 2e-4}, 0.3}}, {0.5}, 8000.0, duration_s, 1e-3, 5);
+  const FoundTaps found = find_taps(recording, {.max_s = 30.0});
+  REQUIRE(found.taps.size() == 1);
+  CHECK(static_cast<double>(found.taps[0].onset) / 8000.0 == Approx(0.5).margin(0.002));
+  CHECK(found.noise_rms < 0.005);  // not the ringing
+}

@@ -225,6 +225,34 @@ TEST_CASE("hum within a mode's width is taken out of it, and that is said", "[ru
   CHECK(found.modes[found.agreed[1]].why.empty());
 }
 
+TEST_CASE("a weak movement that shares no mode with the hardest tap is none, a weak tap is one",
+          "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const auto [bump, hz, taps] = GENERATE(values<std::tuple<std::string, double, std::size_t>>(
+      {{"a rumble", 24.0, 1}, {"a weaker tap", 118.0, 2}}));
+  analysis::Recording recording =
+      testing::planted_recording({{{62.0, 0.03}}, {{118.0, 0.02}}}, {0.4}, 3000.0, 3.0, 1e-4, 5);
+  for (std::size_t n = 4500; n < recording.samples.size(); ++n) {
+    recording.samples[n] +=
+        0.06 * testing::ringing({{{hz, 0.02}}}, (static_cast<double>(n) - 4500.0) / 3000.0);
+  }
+  const std::string file = directory / "taps.csv";
+  std::string text = "a\n";
+  for (const double sample : recording.samples) {
+    text += fmt::format("{:.7g}\n", sample);
+  }
+  testing::write(file, text);
+  const runner::TapIdentification found = identified(file, {"a"});
+  INFO(bump);
+  CHECK(found.taps.size() == taps);
+  CHECK(std::ranges::any_of(found.remarks, [](const std::string& remark) {
+          return remark.find("shares no mode with the hardest tap") != std::string::npos;
+        }) == (taps == 1));
+  if (taps == 1) {
+    CHECK(found.agreed.size() == 2);
+  }
+}
+
 // What was planted is linear; the converter's steps hide much of it.
 TEST_CASE("a mode that would grow at a tap, or hardly fall at rest, follows no amplitude",
           "[runner][identify]") {

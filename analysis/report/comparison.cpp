@@ -207,19 +207,24 @@ std::string participants_of(const NamedSummary& study) {
 }
 
 IntervalEstimate estimate_of(const MainResult& result) {
-  return {result.estimate, result.range,
+  return {result.estimate, result.range.value(),
           result.people ? std::optional{*result.people - 1.0} : std::nullopt};
 }
 
 void add_rows(const MainResult& first, const MainResult& second, const NamedSummary& a,
-              const NamedSummary& b, ReportTable& table) {
-  const IntervalEstimate compared =
-      first.is_ratio ? independent_ratio(estimate_of(first), estimate_of(second))
-                     : independent_difference(estimate_of(first), estimate_of(second));
+              const NamedSummary& b, ReportTable& table, std::vector<CitingText>& remarks) {
   table.rows.push_back(
       {word(first.name), word(participants_of(a)), interval(first.estimate, first.range)});
   table.rows.push_back(
       {word(first.name), word(participants_of(b)), interval(second.estimate, second.range)});
+  if (!first.range || !second.range) {
+    remarks.push_back(fmt::format(
+        "{}: not compared, as all participants of one study have the same value.", first.name));
+    return;
+  }
+  const IntervalEstimate compared =
+      first.is_ratio ? independent_ratio(estimate_of(first), estimate_of(second))
+                     : independent_difference(estimate_of(first), estimate_of(second));
   table.rows.push_back({word(first.name), word(first.is_ratio ? "ratio" : "difference"),
                         interval(compared.value, compared.interval)});
 }
@@ -272,7 +277,7 @@ std::shared_ptr<BlockSummary> compare_blocks(const BlockSummary& first, const Bl
   for (const MainResult& result : first.main_results) {
     const auto other = std::ranges::find(others, result.name, &MainResult::name);
     if (other != others.end()) {
-      add_rows(result, *other, a, b, table);
+      add_rows(result, *other, a, b, table, compared->results().remarks);
       compare_chances(result, *other, a, b, compared->results().remarks);
     }
   }

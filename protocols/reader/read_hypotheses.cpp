@@ -190,6 +190,42 @@ void check_bound(MapReader& reader, const Hypothesis& hypothesis, const Block& b
                                           : fmt::format("greater than {}", allowed.low)));
 }
 
+// What a participant's value of the block is one of; only values of one measure are compared.
+std::string measure_of(const Block& block, const Protocol& protocol) {
+  if (block.comparison) {
+    const Comparison& compared = *block.comparison;
+    const char* const what = compared.side == Side::either  ? "points of equality"
+                             : compared.side == Side::below ? "thresholds below the standard"
+                                                            : "thresholds above the standard";
+    return fmt::format("{} of {}{} in {}", what, compared.axis,
+                       compared.is_fraction ? " as fractions" : "", block.task->name());
+  }
+  if (block.adjustment) {
+    return "settings of " + block.adjustment->axis;
+  }
+  if (block.task->claim() == Claim::accuracy_above_chance) {
+    return fmt::format("right answers in {}, chance {:.3g}", block.task->name(),
+                       block.task->chance_level(block, protocol));
+  }
+  return fmt::format("answers in {}", block.task->name());
+}
+
+void check_measures(MapReader& reader, const Protocol& protocol, const Hypothesis& hypothesis,
+                    const Block& block) {
+  const Block* const other = protocol.find_block(hypothesis.other_block);
+  const bool are_known = other != nullptr && other->task != nullptr && !other->name.empty();
+  if (!are_known) {
+    return;
+  }
+  const std::string first = measure_of(block, protocol);
+  const std::string second = measure_of(*other, protocol);
+  if (first != second) {
+    reader.reject("to_block", fmt::format("measures {}, the block {}: what is not one measure is "
+                                          "not compared",
+                                          second, first));
+  }
+}
+
 // Of groups one block is compared, else two.
 void check_has_values(MapReader& reader, const Protocol& protocol, const Hypothesis& hypothesis,
                       const Block& block) {
@@ -198,6 +234,7 @@ void check_has_values(MapReader& reader, const Protocol& protocol, const Hypothe
     reader.reject(is_of_groups ? "block" : "to_block",
                   "blocks of this task have no value a participant to compare");
   } else if (!is_of_groups) {
+    check_measures(reader, protocol, hypothesis, block);
     check_bound(reader, hypothesis, block, protocol.find_block(hypothesis.other_block));
   }
 }
@@ -209,6 +246,8 @@ void check_fits_task(MapReader& reader, const Protocol& protocol, const Hypothes
   if (is_of_thresholds(hypothesis.claim)) {
     if (!block.comparison || block.comparison->side == Side::either) {
       reader.reject("block", "has no threshold: its procedures find none");
+    } else {
+      check_measures(reader, protocol, hypothesis, block);
     }
     return;
   }

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 
+#include "core/text/plain_text.hpp"
 #include "protocols/tasks/task.hpp"
 #include "protocols/tasks/task_parts.hpp"
 #include "protocols/yaml/yaml_reader.hpp"
@@ -28,6 +30,12 @@ class Paired final : public PreferenceTask {
                                    "its label; stored as `tie`; unset: one of the two is chosen"},
                                   "");
     reader.is_in_data("tie");
+    constexpr std::array switches{"true", "false", "yes", "no", "on", "off"};
+    if (std::ranges::find(switches, core::lower_case(block.tie)) != switches.end()) {
+      reader.reject("tie",
+                    "is the label of the third answer, as 'no difference' (leave the key out "
+                    "for none)");
+    }
     if (!block.tie.empty() && std::ranges::find(block.stimuli, tie) != block.stimuli.end()) {
       reader.reject("tie", "is how this answer is stored: no stimulus can be called so");
     }

@@ -17,6 +17,8 @@
 
 #include "analysis/statistics/quantiles.hpp"
 #include "protocols/axes/axis.hpp"
+#include "protocols/axes/axis_range.hpp"
+#include "protocols/axes/presented_stimulus.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/ordering.hpp"
@@ -173,6 +175,18 @@ bool have_own_blocks(const std::vector<GroupMembers>& groups, const Protocol& pr
   });
 }
 
+// "Group 'x' did them in the order 'b', 'a'. " of each that has an order of its own.
+std::string describe_own_orders(const std::vector<GroupMembers>& groups) {
+  std::string text;
+  for (const GroupMembers& members : groups) {
+    if (members.group != nullptr && !members.group->own_order.empty()) {
+      text += fmt::format("Group '{}' did them in the order '{}'. ", members.group->label,
+                          fmt::join(members.group->own_order, "', '"));
+    }
+  }
+  return text;
+}
+
 // "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
 // blocks: their descriptions.
 CitingText describe_sequence(const Protocol& protocol, const std::string& who,
@@ -183,8 +197,9 @@ CitingText describe_sequence(const Protocol& protocol, const std::string& who,
                               ? citing("Each group did its own of these blocks, in this order: {}",
                                        core::joined(blocks, "; "))
                               : citing("{} did {}", who, core::joined(blocks, ", then "));
+  const std::string own = describe_own_orders(groups);
   if (order.order == protocols::Order::listed) {
-    return citing("{}. ", done);
+    return citing("{}. {}", done, own);
   }
   const auto order_of = [&](int order_index) {
     return protocols::block_sequence(protocol, 0, order_index);
@@ -194,10 +209,11 @@ CitingText describe_sequence(const Protocol& protocol, const std::string& who,
     return dealt_orders(protocols::balanced_block_orders(protocol, members.group), members,
                         order_of);
   });
-  return citing("{}, where '{}' exchanged their places among participants{}. ", done,
+  return citing("{}, where '{}' exchanged their places among participants{}. {}", done,
                 fmt::join(order.blocks, "', '"),
                 order.order == protocols::Order::shuffle ? CitingText{", in random order"}
-                                                         : describe_williams_orders(dealt));
+                                                         : describe_williams_orders(dealt),
+                own);
 }
 
 std::string apparatus(const std::vector<results::SessionRow>& sessions) {
@@ -206,6 +222,24 @@ std::string apparatus(const std::vector<results::SessionRow>& sessions) {
     devices.insert(fmt::format("{} at {} Hz", session.device, session.rate_hz));
   }
   return fmt::format("Apparatus: {}. ", fmt::join(devices, "; "));
+}
+
+// "3000", or what the stimuli have of their own and along what they vary.
+std::string contact_stiffness(const Protocol& protocol, const std::set<std::string>& rendered) {
+  std::vector<double> all;
+  for (const protocols::Stimulus& stimulus : protocol.stimuli) {
+    if (!rendered.contains(stimulus.name)) {
+      continue;
+    }
+    for (const protocols::AxisRange& vary : stimulus.vary) {
+      if (vary.axis->name == "penalty_stiffness_n_per_m") {
+        all.insert(all.end(), {vary.from, vary.to});
+      }
+    }
+    all.push_back(stimulus_with(protocol, stimulus).rendering.penalty_stiffness_n_per_m);
+  }
+  const auto [least, most] = std::ranges::minmax(all);
+  return least == most ? fmt::format("{:g}", least) : fmt::format("{:g} to {:g}", least, most);
 }
 
 // "" if the device rendered nothing.
@@ -224,8 +258,8 @@ std::string rendering(const Protocol& protocol, const DoneBlocks& done) {
   }
   const auto& crossover = protocol.rendering.crossover;
   return fmt::format(
-      "Contact was rendered by a spring of {:g} N/m with {} {}{}{}. ",
-      protocol.rendering.penalty_stiffness_n_per_m,
+      "Contact was rendered by a spring of {} N/m with {} {}{}{}. ",
+      contact_stiffness(protocol, rendered),
       techniques.size() == 1 ? "the technique" : "the techniques", fmt::join(techniques, ", "),
       vibrates ? fmt::format("; modes of vibration up to {:g} Hz", protocol.band_limit_hz) : "",
       crossover ? fmt::format("; an actuator beside the device took over from {:g} to {:g} Hz",
@@ -370,7 +404,7 @@ std::string blinding(const Protocol& protocol, const DoneBlocks& done) {
   });
   return fmt::format(
       "Blinding: what participants saw did not depend on what was rendered{}; the operator's "
-      "screen {} what was presented. ",
+      "page, where it was open, {} what was presented. ",
       are_labels_blind
           ? ", and alternatives had letters whose meaning was drawn anew for each trial"
           : "",
@@ -444,16 +478,19 @@ CitingText describe_groups(const std::vector<GroupMembers>& groups,
 // "24.1 to 26.3 h (median 25) after the one before began"; "" of simulated ones.
 std::string described_times(const protocols::PlannedSession& planned,
                             const std::vector<results::SessionRow>& sessions) {
+  // The first row of each: one may be resumed, perhaps when nothing of it was left.
   std::map<std::string, const results::SessionRow*> latest;  // by participant
   std::vector<double> hours;
   for (const results::SessionRow& session : sessions) {
-    const results::SessionRow* const before =
-        std::exchange(latest[session.participant_id], &session);
-    if (before != nullptr && session.planned_session == planned.name &&
-        before->planned_session != planned.name) {
+    const results::SessionRow*& before = latest[session.participant_id];
+    if (before != nullptr && before->planned_session == session.planned_session) {
+      continue;
+    }
+    if (before != nullptr && session.planned_session == planned.name) {
       hours.push_back(
           std::difftime(time_from(session.started_utc), time_from(before->started_utc)) / 3600.0);
     }
+    before = &session;
   }
   if (hours.empty() || sessions.front().mode == results::Mode::simulated) {
     return "";

@@ -38,8 +38,10 @@ ResultsOfStudy results_of(const analysis::Summary& summary) {
   ResultsOfStudy results;
   for (const auto& block : summary.blocks) {
     for (const analysis::MainResult& result : block->main_results) {
-      results.push_back({block->block, result.name, result.estimate, result.range.low,
-                         result.range.high, result.p});
+      const analysis::Interval range =
+          result.range.value_or(analysis::Interval{result.estimate, result.estimate});
+      results.push_back(
+          {block->block, result.name, result.estimate, range.low, range.high, result.p});
     }
   }
   return results;

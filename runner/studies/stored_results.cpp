@@ -284,8 +284,11 @@ std::vector<std::string> excluded_of(const Excluded& excluded,
 std::string deviations_of(const results::ParticipantCourseRow& course) {
   std::vector<std::string> parts;
   if (course.corrected > 0) {
-    parts.push_back(fmt::format("answers corrected: {} ({} of them from wrong to right)",
-                                course.corrected, course.corrected_to_right));
+    parts.push_back(fmt::format(
+        "answers corrected: {}{}", course.corrected,
+        course.corrected_to_right > 0
+            ? fmt::format(" ({} of them from wrong to right)", course.corrected_to_right)
+            : ""));
   }
   if (course.skipped > 0) {
     parts.push_back(fmt::format("trials skipped: {}", course.skipped));

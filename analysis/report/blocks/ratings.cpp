@@ -165,15 +165,13 @@ std::vector<MainResult> means_over_participants(const std::string& what,
     for (const std::vector<double>& of_participant : values) {
       of_stimulus.push_back(of_participant[i]);
     }
-    if (const auto range = bounded_interval(of_stimulus, bounds)) {
-      means.push_back({fmt::format("{}: {}", what, stimuli[i]),
-                       mean_and_spread(of_stimulus).mean,
-                       *range,
-                       {},
-                       {},
-                       false,
-                       static_cast<int>(of_stimulus.size())});
-    }
+    means.push_back({fmt::format("{}: {}", what, stimuli[i]),
+                     mean_and_spread(of_stimulus).mean,
+                     bounded_interval(of_stimulus, bounds),
+                     {},
+                     {},
+                     false,
+                     static_cast<int>(of_stimulus.size())});
   }
   return means;
 }

@@ -456,7 +456,7 @@ std::shared_ptr<BlockSummary> summarise_thresholds(const BlockDesign& design,
     if (results.participants.size() > 1) {
       Chart& overview = summary->results().charts.front();
       overview.points.push_back({mean->estimate, 0.0, 1.0, true});
-      overview.bars.push_back({0.0, mean->range});
+      overview.bars.push_back({0.0, mean->range.value()});
     }
   }
   return summary;

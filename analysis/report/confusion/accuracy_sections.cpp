@@ -351,18 +351,25 @@ std::vector<double> differences(const IdentificationData& data, const Grouping& 
     const auto of_first = right_beyond_preference(person, by_preference, grouping, first);
     const auto of_second = right_beyond_preference(person, by_preference, grouping, second);
     if (of_first && of_second) {
-      found.push_back(*of_first - *of_second);
+      constexpr double rounding = 1e-12;
+      const double difference = *of_first - *of_second;
+      found.push_back(std::abs(difference) < rounding ? 0.0 : difference);
     }
   }
   return found;
 }
 
-std::vector<Contrast> contrasts_of(const IdentificationData& data, const Grouping& grouping) {
+// alike: those that no participant shows, as where there is one answer to each of two levels.
+std::vector<Contrast> contrasts_of(const IdentificationData& data, const Grouping& grouping,
+                                   std::vector<std::string>& alike) {
   std::vector<Contrast> contrasts;
   for (std::size_t i = 0; i < grouping.levels.size(); ++i) {
     for (std::size_t j = i + 1; j < grouping.levels.size(); ++j) {
       const std::vector<double> found = differences(data, grouping, i, j);
-      if (found.size() > 1) {
+      if (found.size() > 1 && std::ranges::all_of(found, [](double one) { return one == 0.0; })) {
+        alike.push_back(
+            fmt::format("{}: {} and {}", grouping.name, grouping.levels[i], grouping.levels[j]));
+      } else if (found.size() > 1) {
         contrasts.push_back({grouping.name, grouping.levels[i], grouping.levels[j],
                              paired_contrast(found, contrasts_seed)});
       }
@@ -380,8 +387,9 @@ ReportSection contrasts_section(const IdentificationData& data) {
                      column("participants", "participants"), column("permutation", "p"),
                      column("after Holm", "p_holm")}};
   ReportSection section{"Contrasts"};
+  std::vector<std::string> alike;
   for (const Grouping& grouping : groupings_of_stimuli(data)) {
-    const std::vector<Contrast> contrasts = contrasts_of(data, grouping);
+    const std::vector<Contrast> contrasts = contrasts_of(data, grouping, alike);
     std::vector<double> p;
     std::ranges::transform(contrasts, std::back_inserter(p),
                            [](const Contrast& contrast) { return contrast.result.p; });
@@ -395,10 +403,18 @@ ReportSection contrasts_section(const IdentificationData& data) {
     }
   }
   section.tables.push_back(table);
-  if (table.rows.empty()) {
+  if (!alike.empty()) {
+    section.remarks.push_back(fmt::format(
+        "Not tested, as the difference is 0 for each participant (where two levels have one answer "
+        "each, it always is): {}.",
+        fmt::join(alike, "; ")));
+  }
+  if (table.rows.empty() && alike.empty()) {
     section.remarks.emplace_back(
         "No contrasts: no technique or factor has two levels that two participants were "
         "presented.");
+  }
+  if (table.rows.empty()) {
     return section;
   }
   section.remarks.emplace_back(

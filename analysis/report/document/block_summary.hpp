@@ -71,7 +71,7 @@ struct HypothesisResult {
 struct MainResult {
   std::string name;  // with its unit
   double estimate{};
-  Interval range;                  // 95 %, over participants
+  std::optional<Interval> range;   // 95 %, over participants; unset: all have the same value
   std::optional<double> p{};       // of the planned test, where there is one
   std::optional<double> chance{};  // what guessing gives, of a share of right answers
   bool is_ratio{};                 // above 0, a geometric mean: studies are compared by the ratio

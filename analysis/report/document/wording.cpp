@@ -84,12 +84,16 @@ std::string contrast_in_words(double mean, const std::optional<Interval>& interv
 }
 
 std::string in_words(const MainResult& result, std::int64_t took_part) {
-  const std::string value =
-      result.chance ? fmt::format("{} (95 % CI {}, chance {})", percent(result.estimate),
-                                  percent_range(result.range), percent(*result.chance))
-                    : fmt::format("{} (95 % CI {} to {})", rounded(result.estimate),
-                                  rounded(result.range.low), rounded(result.range.high));
-  return fmt::format("{} {}{}{}", result.name, value,
+  const auto value = [&] {
+    if (!result.range) {
+      return fmt::format("{} for all", rounded(result.estimate));
+    }
+    return result.chance ? fmt::format("{} (95 % CI {}, chance {})", percent(result.estimate),
+                                       percent_range(*result.range), percent(*result.chance))
+                         : fmt::format("{} (95 % CI {} to {})", rounded(result.estimate),
+                                       rounded(result.range->low), rounded(result.range->high));
+  };
+  return fmt::format("{} {}{}{}", result.name, value(),
                      result.people ? ", of " + people_in_words(*result.people, took_part) : "",
                      result.of_whom);
 }

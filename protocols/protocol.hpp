@@ -317,6 +317,7 @@ struct Protocol {
   double band_limit_hz{};
   double rate_hz{};
   core::RenderSettings rendering;
+  bool stores_actuator{true};              // what is rendered above the crossover, with each trial
   std::optional<DroppedModes> drop_modes;  // nullopt: none
   core::Placement placement;
   std::map<std::string, std::shared_ptr<const Material>> materials;

@@ -146,6 +146,23 @@ struct TraceChunk {
   std::int64_t ticks{};
   std::vector<std::byte> bytes;  // trace_codec.hpp
 };
+// What an actuator was given in a trial, period by period of its card, and what it followed from
+// beside the trace: from these the samples can be rendered again (actuator_source.hpp).
+struct ActuatorRow {
+  double rate_hz{};
+  double delay_s{};  // from a tick to its sound
+  double full_scale_n{};
+  double last_n{};                 // the sample before the first
+  double mean_square_n2{};         // of the limiter, before the first
+  std::int64_t ticks_lost{};       // of the loop, on their way to the card's thread
+  std::int64_t dropped_periods{};  // the last ones
+};
+struct ActuatorChunk {
+  std::int64_t first_period{};
+  std::int64_t periods{};
+  std::int64_t samples{};
+  std::vector<std::byte> bytes;  // trace_codec.hpp
+};
 struct TickStatisticsRow {
   std::int64_t ticks{};
   std::int64_t late{};
@@ -230,6 +247,8 @@ struct TrialRecord {
   std::optional<ResponseRow> response;
   std::vector<EventRow> events;
   std::vector<TraceChunk> trace;
+  std::optional<ActuatorRow> actuator{};  // unset: none rendered, or it is not recorded
+  std::vector<ActuatorChunk> actuator_chunks{};
   TickStatisticsRow statistics;
   std::vector<SessionEventRow> session_events;  // since the last trial
 };

@@ -49,6 +49,10 @@ ActuatorTick actuator_tick(const Contact& contact) noexcept {
   return tick;
 }
 
+double passed_share(double rendered_n, double passed_n) noexcept {
+  return rendered_n > 0.0 ? std::min(1.0, passed_n / rendered_n) : 1.0;
+}
+
 ActuatorVoice::ActuatorVoice(const VibratingPlate* plate,
                              std::span<const std::complex<double>> inverse,
                              const RenderSettings& settings, Transients transients, double sample_s)
@@ -147,8 +151,9 @@ void ActuatorVoice::reset() noexcept {
   is_touching_ = false;
 }
 
-ActuatorLimiter::ActuatorLimiter(const ActuatorLimits& limits, double sample_s) noexcept
-    : limits_{limits}, kept_{std::exp(-sample_s)} {}
+ActuatorLimiter::ActuatorLimiter(const ActuatorLimits& limits, double sample_s,
+                                 double mean_square_n2) noexcept
+    : limits_{limits}, kept_{std::exp(-sample_s)}, mean_square_n2_{mean_square_n2} {}
 
 double ActuatorLimiter::limited(double force_n) noexcept {
   const double rms2 = limits_.rms_n * limits_.rms_n;

@@ -29,6 +29,7 @@ struct ActuatorTick {
 };
 static_assert(std::is_trivially_copyable_v<ActuatorTick>);
 ActuatorTick actuator_tick(const Contact& contact) noexcept;
+double passed_share(double rendered_n, double passed_n) noexcept;
 
 // A stimulus's vibration as the actuator renders it, sample by sample at audio rate: the law of
 // PlateVibration, DecayingSinusoid and RecordedTransient (paper eq. 11 and 14 to 17), each mode
@@ -98,12 +99,15 @@ class ActuatorVoice {
 // the largest sample allowed is the root of (rms² - a s_{n-1}) / (1 - a), which is never below rms.
 class ActuatorLimiter {
  public:
-  ActuatorLimiter(const ActuatorLimits& limits, double sample_s) noexcept;
+  // mean_square_n2: s of the sample before the first.
+  ActuatorLimiter(const ActuatorLimits& limits, double sample_s,
+                  double mean_square_n2 = 0.0) noexcept;
   double limited(double force_n) noexcept;
+  double mean_square_n2() const noexcept { return mean_square_n2_; }
 
  private:
   ActuatorLimits limits_;
   double kept_;  // a
-  double mean_square_n2_{0.0};
+  double mean_square_n2_;
 };
 }  // namespace tapstudy::core

@@ -17,18 +17,23 @@ std::size_t waiting_capacity(const ActuatorSource::Settings& settings) {
 }
 }  // namespace
 
-ActuatorSource::ActuatorSource(const Settings& settings)
+ActuatorSource::ActuatorSource(const Settings& settings, const Before& before)
     : settings_{settings},
+      delay_ns_{std::llround(1e9 * settings.delay_s)},
       ticks_{ring_capacity},
       waiting_(waiting_capacity(settings)),
       samples_a_tick_{
           static_cast<int>(std::max(1L, std::lround(settings.tick_s * settings.rate_hz)))},
+      last_n_{before.last_n},
       limiter_{{std::min(settings.limits.peak_n, settings.full_scale_n), settings.limits.rms_n},
-               1.0 / settings.rate_hz} {}
+               1.0 / settings.rate_hz,
+               before.mean_square_n2} {}
 
 void ActuatorSource::use(std::span<core::ActuatorVoice> voices) noexcept {
   take_ticks();
   first_ = count_ = 0;  // of the trial before
+  taken_ = 0;
+  lost_before_ = ticks_.dropped();
   is_newest_last_ = false;
   heard_ = nullptr;
   voices_ = voices;
@@ -36,7 +41,7 @@ void ActuatorSource::use(std::span<core::ActuatorVoice> voices) noexcept {
   bridge_gap();
 }
 
-void ActuatorSource::fill(std::span<float> samples, double heard_at_ns, double frame_ns,
+void ActuatorSource::fill(std::span<float> samples, std::int64_t heard_at_ns, double frame_ns,
                           std::int64_t now_ns) noexcept {
   take_ticks();
   const double without_tick_s = 1e-9 * static_cast<double>(now_ns - newest_ns_);
@@ -48,14 +53,18 @@ void ActuatorSource::fill(std::span<float> samples, double heard_at_ns, double f
     }
     first_ = count_ = 0;
   }
-  double at_ns = heard_at_ns - 1e9 * settings_.delay_s;
+  double since_ns = 0.0;
   for (float& sample : samples) {
-    const double wanted_n = next_force_n(at_ns);
+    const double wanted_n = next_force_n(heard_at_ns, since_ns);
     const double passed_n = limiter_.limited(wanted_n);
     limited_ += passed_n == wanted_n ? 0 : 1;
     sample = static_cast<float>(passed_n / settings_.full_scale_n);
-    at_ns += frame_ns;
+    since_ns += frame_ns;
   }
+}
+
+std::int64_t ActuatorSource::ticks_lost() const noexcept {
+  return static_cast<std::int64_t>(ticks_.dropped() - lost_before_);
 }
 
 bool ActuatorSource::is_done() noexcept {
@@ -67,6 +76,7 @@ bool ActuatorSource::is_done() noexcept {
 void ActuatorSource::take_ticks() noexcept {
   core::ActuatorTick tick{};
   while (ticks_.try_pop(tick)) {
+    ++taken_;
     newest_ns_ = tick.at_ns;
     is_newest_last_ = tick.is_last;
     if (count_ == waiting_.size()) {
@@ -77,8 +87,11 @@ void ActuatorSource::take_ticks() noexcept {
   }
 }
 
-const core::ActuatorTick* ActuatorSource::due(double at_ns) noexcept {
-  if (count_ == 0 || static_cast<double>(waiting_[first_].at_ns) > at_ns) {
+// Whether it is heard at this time since the period's first sample, or before; the same of times
+// that count from another begin.
+const core::ActuatorTick* ActuatorSource::due(std::int64_t heard_at_ns, double since_ns) noexcept {
+  if (count_ == 0 ||
+      static_cast<double>(waiting_[first_].at_ns + delay_ns_ - heard_at_ns) > since_ns) {
     return nullptr;
   }
   const core::ActuatorTick& tick = waiting_[first_];
@@ -87,12 +100,12 @@ const core::ActuatorTick* ActuatorSource::due(double at_ns) noexcept {
   return &tick;
 }
 
-double ActuatorSource::next_force_n(double at_ns) noexcept {
+double ActuatorSource::next_force_n(std::int64_t heard_at_ns, double since_ns) noexcept {
   if (heard_ != nullptr) {
     heard_->advance();
   }
   end_left_ = std::max(0, end_left_ - 1);
-  while (const core::ActuatorTick* const tick = due(at_ns)) {
+  while (const core::ActuatorTick* const tick = due(heard_at_ns, since_ns)) {
     begin(*tick);
   }
   const double rendered_n = heard_ == nullptr ? 0.0 : heard_->force_n();

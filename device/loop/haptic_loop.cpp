@@ -38,7 +38,6 @@ void HapticLoop::run(const std::stop_token& stop) noexcept {
   gate_.stop();
   while (gate_.state() != ForceGate::State::at_rest && step()) {
   }
-  tell_actuator_of_end();
   zero_force();
 }
 
@@ -48,6 +47,7 @@ void HapticLoop::run_ticks(std::int64_t count) noexcept {
 }
 
 void HapticLoop::zero_force() noexcept {
+  tell_actuator_of_end();
   if (report_.stopped_by == TickFault::none) {
     report_.stop = device_.zero_force();
     if (report_.stop == StopOutcome::unconfirmed) {
@@ -272,9 +272,8 @@ void HapticLoop::tell_actuator(const core::RenderedTick& rendered,
     return;
   }
   core::ActuatorTick tick = core::actuator_tick(rendered.contact);
-  const double wanted_n = rendered.force_n.norm();
   tick.at_ns = last_tick_;
-  tick.passed_share = wanted_n > 0.0 ? std::min(1.0, passed_n.norm() / wanted_n) : 1.0;
+  tick.passed_share = core::passed_share(rendered.force_n.norm(), passed_n.norm());
   tick.alternative = static_cast<std::uint8_t>(current_);
   actuator_.ticks->try_push(tick);
 }

@@ -208,6 +208,10 @@ void read_crossover(MapReader& rendering, Protocol& protocol) {
     rendering.reject("crossover_hz",
                      "does not end below half of rate_hz: what the device renders would alias");
   }
+  protocol.stores_actuator = rendering.yes_or_no(
+      {"stores_actuator",
+       "what the actuator renders is stored with each trial, sample by sample; with crossover_hz"},
+      true);
 }
 
 void read_band(MapReader& rendering, Protocol& protocol) {

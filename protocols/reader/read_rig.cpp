@@ -330,6 +330,16 @@ std::optional<core::Placement> placement_in_stored_rig(const std::string& rig_te
   return placement;
 }
 
+std::optional<core::ActuatorOutput> actuator_in_stored_rig(const std::string& rig_text) {
+  const std::string file = "stored rig";
+  Problems problems{file};
+  MapReader top = MapReader::first_document(rig_text, file, problems);
+  Rig rig;
+  read_actuator(top, rig);
+  problems.throw_if_any();
+  return rig.actuator;
+}
+
 std::set<std::string> rig_keys_asked_for(const std::string& text, const std::string& file,
                                          RigDevices devices) {
   Problems problems{file};

@@ -46,6 +46,8 @@ std::string calibration_schema(const std::vector<std::string>& types);
 // calibration. nullopt: where the protocol says; also of an empty text. Throws InvalidInput if that
 // text is broken.
 std::optional<core::Placement> placement_in_stored_rig(const std::string& rig_text);
+// Likewise the actuator beside the device; nullopt: there was none.
+std::optional<core::ActuatorOutput> actuator_in_stored_rig(const std::string& rig_text);
 
 // The calibration of one SPIDAR, a file of its own: all rigs on that device share it.
 

@@ -71,7 +71,6 @@ std::string csvw_metadata(const Provenance& provenance, const std::vector<Descri
 
 namespace {
 namespace fs = std::filesystem;
-constexpr const char* trace_schema = "trace.schema.json";
 
 void write_table(const fs::path& file, const Table& table) {
   core::write_new_file(file.string(), [&](std::ostream& out) { write_csv(out, table); });
@@ -82,14 +81,23 @@ void write_traces(const fs::path& directory, Store& store, const StudyExport& st
   if (study.trials.empty()) {
     return;
   }
-  core::make_directories((directory / "traces").string());
+  const std::vector<Recording> all = recordings(store);
+  const auto schema = [](const Recording& recording) {
+    return (recording.name == "traces" ? "trace" : recording.name) + ".schema.json";
+  };
+  for (const Recording& recording : all) {
+    core::make_directories((directory / recording.name).string());
+    core::write_new_file(directory / schema(recording), csvw_schema(recording.columns));
+  }
   each_traced_trial(study, [&](std::int64_t trial) {
-    const Table trace = trace_table(store, trial);
-    const std::string name = "traces/" + trace.name + ".csv";
-    write_table(directory / name, trace);
-    files.push_back({name, trace.description, trace_schema, {}});
+    for (const Recording& recording : all) {
+      if (const std::optional<Table> table = recording.of_trial(trial)) {
+        const std::string name = recording.name + "/" + table->name + ".csv";
+        write_table(directory / name, *table);
+        files.push_back({name, table->description, schema(recording), {}});
+      }
+    }
   });
-  core::write_new_file(directory / trace_schema, csvw_schema(trace_columns()));
 }
 }  // namespace
 

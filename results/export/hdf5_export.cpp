@@ -299,22 +299,24 @@ double number_in(const Cell& cell) {
   return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(cell);
 }
 
-void add_traces_group(Hdf5File& file) {
+void add_recording(Hdf5File& file, const Recording& recording) {
   std::vector<std::string> names;
   std::vector<std::string> units;
   std::vector<std::string> descriptions;
-  for (const Column& column : trace_columns()) {
+  for (const Column& column : recording.columns) {
     names.push_back(column.name);
     units.push_back(column.unit);
     descriptions.push_back(column.description);
   }
-  file.add_group("/traces");
-  file.describe("/traces", "columns", names);
-  file.describe("/traces", "units", units);
-  file.describe("/traces", "descriptions", descriptions);
+  const std::string group = "/" + recording.name;
+  file.add_group(group);
+  file.describe(group, "columns", names);
+  file.describe(group, "units", units);
+  file.describe(group, "descriptions", descriptions);
 }
 
-void add_trace(Hdf5File& file, const Table& trace, std::int64_t trial_id) {
+void add_samples(Hdf5File& file, const std::string& recording, const Table& trace,
+                 std::int64_t trial_id) {
   std::vector<std::vector<double>> columns(trace.columns.size());
   trace.each_row([&](const Row& row) {
     for (std::size_t i = 0; i < row.size(); ++i) {
@@ -325,7 +327,7 @@ void add_trace(Hdf5File& file, const Table& trace, std::int64_t trial_id) {
   for (const std::vector<double>& column : columns) {
     numbers.insert(numbers.end(), column.begin(), column.end());
   }
-  const std::string path = "/traces/" + trace.name;
+  const std::string path = "/" + recording + "/" + trace.name;
   file.add_matrix(path, numbers, columns.size());
   file.describe(path, "description", trace.description);
   file.describe(path, "trial_id", trial_id);
@@ -343,9 +345,17 @@ void write_hdf5_file(const std::string& name, Store& store, const StudyExport& s
   for (const Table& table : study.tables) {
     add_table(file, table);
   }
-  add_traces_group(file);
-  each_traced_trial(study,
-                    [&](std::int64_t trial) { add_trace(file, trace_table(store, trial), trial); });
+  const std::vector<Recording> all = recordings(store);
+  for (const Recording& recording : all) {
+    add_recording(file, recording);
+  }
+  each_traced_trial(study, [&](std::int64_t trial) {
+    for (const Recording& recording : all) {
+      if (const std::optional<Table> table = recording.of_trial(trial)) {
+        add_samples(file, recording.name, *table, trial);
+      }
+    }
+  });
   file.close();
 }
 }  // namespace tapstudy::results

@@ -71,8 +71,8 @@ struct StudyExport {
 void each_traced_trial(const StudyExport& study, const std::function<void(std::int64_t)>& write);
 
 // Fills a directory: a file NAME.csv a table, csv-metadata.json (csv_export.cpp), protocol.yaml,
-// further files, and of each trial that has a trace traces/trial_000001.csv. Throws InvalidInput
-// where it cannot be written, StoreError where the study cannot be read.
+// further files, and of each trial that has a trace traces/trial_000001.csv, likewise actuator/.
+// Throws InvalidInput where it cannot be written, StoreError where the study cannot be read.
 void write_csv_files(const std::string& directory, Store& store, const StudyExport& study);
 
 // Writes one new HDF5 file. Errors as above.
@@ -84,6 +84,7 @@ void write_csv_files(const std::string& directory, Store& store, const StudyExpo
 //   /traces/trial_000001 columns x ticks, doubles (in Octave and R, which count dimensions the
 //   other
 //                        way round, ticks x columns); attributes trial_id, description
+//   /actuator            likewise, samples of actuators; only where there are any
 void write_hdf5_file(const std::string& name, Store& store, const StudyExport& study);
 
 // Fills a directory with a dataset of the Brain Imaging Data Structure (BIDS 1.8, behaviour):
@@ -104,6 +105,13 @@ std::vector<Table> study_tables(Store& store, const std::map<std::string, std::s
 Row row_from(Statement& statement, const std::vector<Column>& columns);
 // Trials of which ticks are stored; of a real plate there are none.
 std::vector<std::int64_t> trials_with_traces(Store& store);
+// What is sampled in trials: traces, and what actuators were given where that is stored.
+struct Recording {
+  std::string name;  // of its folder or group
+  std::vector<Column> columns;
+  std::function<std::optional<Table>(std::int64_t trial_id)> of_trial;  // unset: nothing is stored
+};
+std::vector<Recording> recordings(Store& store);
 // Every tick of a trial; columns as in trace_format.md. A NaN is where a device reports nothing.
 std::vector<Column> trace_columns();
 Table trace_table(Store& store, std::int64_t trial_id);

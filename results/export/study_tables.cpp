@@ -220,17 +220,59 @@ std::vector<Column> trace_columns() {
       "touching impact saturated fault_code missed_replies late");
 }
 
-Table trace_table(Store& store, std::int64_t trial_id) {
+namespace {
+Table table_of_trial(Store& store, std::int64_t trial_id, const char* what,
+                     std::vector<Column> columns, std::function<void(const RowSink&)> each_row) {
   std::string whose;
   store.each_row(
       fmt::format("SELECT participant_id, mode FROM trial_context WHERE trial_id = {}", trial_id),
       [&](Statement& row) { whose = fmt::format("{} ({})", row.text(0), row.text(1)); });
   return {fmt::format("trial_{:06}", trial_id),
-          fmt::format("Every tick of trial {}, of participant {}.", trial_id, whose),
-          trace_columns(), [&store, trial_id](const RowSink& sink) {
-            for (const core::TraceSample& sample : store.trace(trial_id)) {
-              sink(row_of(sample));
-            }
-          }};
+          fmt::format("{} of trial {}, of participant {}.", what, trial_id, whose),
+          std::move(columns), std::move(each_row)};
+}
+
+void add_samples(const Store::StoredActuator& actuator, const RowSink& sink) {
+  std::size_t next = 0;
+  for (const core::ActuatorPeriod& period : actuator.trace.periods) {
+    for (int i = 0; i < period.samples; ++i) {
+      sink({1e-9 * (static_cast<double>(period.heard_at_ns) + i * period.frame_ns),
+            actuator.row.full_scale_n * static_cast<double>(actuator.trace.samples[next++]),
+            std::int64_t{period.is_heard}});
+    }
+  }
+}
+
+std::optional<Table> actuator_table(Store& store, const std::vector<Column>& columns,
+                                    std::int64_t trial_id) {
+  const auto actuator = store.actuator(trial_id);
+  if (!actuator) {
+    return std::nullopt;
+  }
+  return table_of_trial(store, trial_id, "Every sample of the actuator", columns,
+                        [actuator](const RowSink& sink) { add_samples(*actuator, sink); });
+}
+}  // namespace
+
+Table trace_table(Store& store, std::int64_t trial_id) {
+  return table_of_trial(store, trial_id, "Every tick", trace_columns(),
+                        [&store, trial_id](const RowSink& sink) {
+                          for (const core::TraceSample& sample : store.trace(trial_id)) {
+                            sink(row_of(sample));
+                          }
+                        });
+}
+
+std::vector<Recording> recordings(Store& store) {
+  std::vector<Recording> all{{"traces", trace_columns(), [&store](std::int64_t trial_id) {
+                                return trace_table(store, trial_id);
+                              }}};
+  if (store.has_actuators()) {
+    const std::vector<Column> columns = known_columns("heard_s command_n is_heard");
+    all.push_back({"actuator", columns, [&store, columns](std::int64_t trial_id) {
+                     return actuator_table(store, columns, trial_id);
+                   }});
+  }
+  return all;
 }
 }  // namespace tapstudy::results

@@ -193,6 +193,18 @@ std::vector<Column> columns_of_traces() {
   };
 }
 
+std::vector<Column> columns_of_actuators() {
+  return {
+      {"heard_s", real, "s",
+       "Time at which the sample is heard, from the first tick of the trial, by the measured clock "
+       "of the card: later than the tick that it renders by actuator.delay_s"},
+      {"command_n", real, "N",
+       "Force that the actuator was commanded, after its limits, its response undone"},
+      {"is_heard", boolean, "",
+       "The card took the sample; otherwise it had no room for it in time"},
+  };
+}
+
 std::vector<Column> columns_of_stimuli() {
   return {
       {"plate", text, "", "Plate of the protocol"},
@@ -228,8 +240,9 @@ std::vector<Column> columns_of_stimuli() {
 const std::vector<Column>& all_known_columns() {
   static const std::vector<Column> all = [] {
     std::vector<Column> columns;
-    for (const auto& part : {columns_of_context(), columns_of_answers(), columns_of_conduct(),
-                             columns_of_sessions(), columns_of_traces(), columns_of_stimuli()}) {
+    for (const auto& part :
+         {columns_of_context(), columns_of_answers(), columns_of_conduct(), columns_of_sessions(),
+          columns_of_traces(), columns_of_actuators(), columns_of_stimuli()}) {
       columns.insert(columns.end(), part.begin(), part.end());
     }
     return columns;

@@ -31,10 +31,10 @@ constexpr std::array<CountedId, 4> counted_ids{
      {"operator_action", "action_id", "session_id, action_id", " action_id "}}};
 
 // The tables in the order in which they are created: what refers to another comes later.
-constexpr std::array<std::string_view, 12> copied_tables{
-    "participant", "session",         "trial",       "alternative",
-    "axis_value",  "response",        "event",       "session_event",
-    "form_answer", "operator_action", "trace_chunk", "tick_statistics"};
+constexpr std::array<std::string_view, 14> copied_tables{
+    "participant", "session",  "trial",          "alternative",    "axis_value",
+    "response",    "event",    "session_event",  "form_answer",    "operator_action",
+    "trace_chunk", "actuator", "actuator_chunk", "tick_statistics"};
 
 // Which id of the whole each id of this part becomes.
 void number_anew(Database& database) {

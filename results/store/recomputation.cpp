@@ -8,21 +8,14 @@
 #include "results/traces/trace_collector.hpp"
 namespace tapstudy::results {
 namespace {
-struct StoredTrial {
-  std::int64_t id{};
-  std::string participant_id;
-  TrialRow row;
-  std::int64_t ticks{};
-  std::int64_t saturated{};
-  std::int64_t dropped{};
-  bool has_statistics{};
-};
 struct StoredAnswer {
   std::int64_t id{};
   std::optional<std::int64_t> supersedes;  // unset: the first
   std::string given_by;
   ResponseRow row;
 };
+
+}  // namespace
 
 std::vector<StoredTrial> stored_trials(Store& store) {
   std::vector<StoredTrial> trials;
@@ -46,6 +39,13 @@ std::vector<StoredTrial> stored_trials(Store& store) {
   return trials;
 }
 
+std::string difference_in(const StoredTrial& trial, const std::string& what,
+                          const std::string& stored, const std::string& recomputed) {
+  return fmt::format("trial {} (participant {}, number {}): {} is {}, recomputed {}", trial.id,
+                     trial.participant_id, trial.row.number, what, stored, recomputed);
+}
+
+namespace {
 std::vector<EventRow> stored_events(Store& store, std::int64_t trial_id) {
   std::vector<EventRow> events;
   store.each_row(
@@ -128,9 +128,7 @@ class Comparison {
  private:
   void note(const std::string& what, const std::string& stored, const std::string& recomputed) {
     if (stored != recomputed) {
-      result_.differences.push_back(
-          fmt::format("trial {} (participant {}, number {}): {} is {}, recomputed {}", trial_->id,
-                      trial_->participant_id, trial_->row.number, what, stored, recomputed));
+      result_.differences.push_back(difference_in(*trial_, what, stored, recomputed));
     }
   }
 

@@ -17,6 +17,21 @@ struct TaskRule {
       is_correct;
 };
 
+// A trial with what it is held against.
+struct StoredTrial {
+  std::int64_t id{};
+  std::string participant_id;
+  TrialRow row;
+  std::int64_t ticks{};
+  std::int64_t saturated{};
+  std::int64_t dropped{};
+  bool has_statistics{};
+};
+std::vector<StoredTrial> stored_trials(Store& store);
+// "trial 3 (participant P01, number 3): WHAT is STORED, recomputed RECOMPUTED"
+std::string difference_in(const StoredTrial& trial, const std::string& what,
+                          const std::string& stored, const std::string& recomputed);
+
 // Recomputes what a study stores twice, and says where the two differ, a line each, naming table,
 // trial and column:
 //   event            contacts, impacts (with their speeds), releases, switches, from the trace, bit

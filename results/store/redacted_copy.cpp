@@ -61,6 +61,12 @@ INSERT INTO tick_statistics SELECT trial_id, ticks, late, skipped, saturated, dr
   lateness_p999_s, worst_lateness_s, fault
   FROM original.tick_statistics ORDER BY trial_id;
 )sql";
+constexpr const char* copy_actuators_sql = R"sql(
+INSERT INTO actuator SELECT trial_id, rate_hz, delay_s, full_scale_n, last_n, mean_square_n2,
+  ticks_lost, dropped_periods FROM original.actuator ORDER BY trial_id;
+INSERT INTO actuator_chunk SELECT trial_id, first_period, periods, samples, codec, bytes
+  FROM original.actuator_chunk ORDER BY trial_id, first_period;
+)sql";
 
 void fill_database(Database& database, const std::string& original, const StudyRow& study,
                    const Redaction& redaction) {
@@ -95,6 +101,9 @@ void fill_database(Database& database, const std::string& original, const StudyR
     Statement{database, "INSERT INTO temp.kept VALUES (?, ?)"}.bind(form).bind(item).finish();
   }
   database.run(copy_sql);
+  if (version >= first_version_with_actuators) {
+    database.run(copy_actuators_sql);
+  }
   all.commit();
 }
 }  // namespace

@@ -7,12 +7,14 @@
 namespace tapstudy::results {
 // PRAGMA application_id of a study's database ("taps") and PRAGMA user_version of its schema.
 inline constexpr int application_id = 0x74617073;
-inline constexpr int schema_version = 13;
+inline constexpr int schema_version = 14;
 // Stores of these lack what their protocols did not have: the participants' groups, a protocol's
-// sessions and its changed texts. They are read, and go on, as they are.
+// sessions and its changed texts; before 14 what an actuator was given was not stored. They are
+// read, and go on, as they are.
 inline constexpr int first_schema_version = 11;
 inline constexpr int first_version_with_groups = 12;
 inline constexpr int first_version_with_planned_sessions = 13;
+inline constexpr int first_version_with_actuators = 14;
 inline constexpr bool is_known_schema(std::int64_t version) {
   return version >= first_schema_version && version <= schema_version;
 }
@@ -150,6 +152,25 @@ CREATE TABLE trace_chunk (
   bytes BLOB NOT NULL,
   PRIMARY KEY (trial_id, first_tick)
 ) STRICT;
+CREATE TABLE actuator (              -- of a trial, what its samples follow from beside the trace
+  trial_id INTEGER NOT NULL UNIQUE REFERENCES trial,
+  rate_hz REAL NOT NULL,
+  delay_s REAL NOT NULL,            -- from a tick to its sound
+  full_scale_n REAL NOT NULL,
+  last_n REAL NOT NULL,             -- the sample before the first
+  mean_square_n2 REAL NOT NULL,     -- of the limiter, before the first
+  ticks_lost INTEGER NOT NULL,      -- on their way to the card's thread
+  dropped_periods INTEGER NOT NULL  -- the last ones
+) STRICT;
+CREATE TABLE actuator_chunk (
+  trial_id INTEGER NOT NULL REFERENCES trial,
+  first_period INTEGER NOT NULL,
+  periods INTEGER NOT NULL,
+  samples INTEGER NOT NULL,
+  codec TEXT NOT NULL,
+  bytes BLOB NOT NULL,
+  PRIMARY KEY (trial_id, first_period)
+) STRICT;
 CREATE TABLE tick_statistics (
   trial_id INTEGER PRIMARY KEY REFERENCES trial,
   ticks INTEGER NOT NULL,
@@ -238,7 +259,14 @@ struct LaterSchemaText {
   int since;
   std::string_view text;
 };
-inline constexpr std::array<LaterSchemaText, 9> later_schema_texts{{
+constexpr std::string_view part_of_schema(std::string_view from, std::string_view until) {
+  const std::string_view all = schema_sql;
+  const std::size_t begin = all.find(from);
+  return all.substr(begin, all.find(until) - begin);
+}
+inline constexpr std::array<LaterSchemaText, 10> later_schema_texts{{
+    {first_version_with_actuators,
+     part_of_schema("CREATE TABLE actuator (", "CREATE TABLE tick_statistics (")},
     {first_version_with_groups,
      "  group_name TEXT,                     -- NULL: the protocol has no groups\n"},
     {first_version_with_groups,

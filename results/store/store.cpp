@@ -161,7 +161,10 @@ Store Store::from_journal(const std::string& directory) {
     return found->second;
   };
   for (const JournalledAnswer& answer : content.entries.answers) {
-    TrialRecord record{answer.trial, answer.alternatives, answer.response, {}, {}, {}, {}};
+    TrialRecord record;
+    record.trial = answer.trial;
+    record.alternatives = answer.alternatives;
+    record.response = answer.response;
     record.trial.session_id = new_id(answer.trial.session_id);
     store.add_trial(record);
   }
@@ -413,6 +416,9 @@ bool Store::has_columns_of_groups() {
   return database_.pragma("user_version") >= first_version_with_groups;
 }
 
+bool Store::has_tables_of_actuators() {
+  return database_.pragma("user_version") >= first_version_with_actuators;
+}
 bool Store::has_columns_of_planned_sessions() {
   return database_.pragma("user_version") >= first_version_with_planned_sessions;
 }

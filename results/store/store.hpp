@@ -12,6 +12,7 @@
 #include "results/journal/journal.hpp"
 #include "results/rows.hpp"
 #include "results/store/sqlite.hpp"
+#include "results/traces/trace_codec.hpp"
 namespace tapstudy::results {
 // Whether study.db alone holds all that was stored. Where another connection keeps it open, the
 // latest is in study.db-wal beside it.
@@ -130,6 +131,15 @@ class Store {
   std::vector<std::int64_t> trials();  // the ids of all, whatever became of them
   // Every tick of a trial, in order; empty if there is no such trial.
   std::vector<core::TraceSample> trace(std::int64_t trial_id);
+  // What an actuator was given in a trial; unset where that is not stored.
+  struct StoredActuator {
+    ActuatorRow row;
+    ActuatorTrace trace;
+  };
+  std::optional<StoredActuator> actuator(std::int64_t trial_id);
+  // Whether it is stored of any trial; whether this store can hold it.
+  bool has_actuators();
+  bool has_tables_of_actuators();
 
  private:
   Store(Database database, std::optional<Journal> journal)
@@ -179,6 +189,7 @@ class Store {
   std::optional<std::string> latest_protocol_text();
   void check_not_answered(const TrialRow& trial);
   void add_alternatives(std::int64_t trial_id, const std::vector<AlternativeRow>& alternatives);
+  void add_actuator(std::int64_t trial_id, const TrialRecord& record);
   void add_details(std::int64_t trial_id, const TrialRecord& record);
   Database database_;
   std::optional<Journal> journal_;

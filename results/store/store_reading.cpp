@@ -283,6 +283,39 @@ std::vector<core::TraceSample> Store::trace(std::int64_t trial_id) {
   return samples;
 }
 
+bool Store::has_actuators() {
+  return has_tables_of_actuators() && Statement{database_, "SELECT 1 FROM actuator"}.step();
+}
+
+std::optional<Store::StoredActuator> Store::actuator(std::int64_t trial_id) {
+  if (!has_tables_of_actuators()) {
+    return std::nullopt;
+  }
+  Statement row{database_,
+                "SELECT rate_hz, delay_s, full_scale_n, last_n, mean_square_n2, ticks_lost, "
+                "dropped_periods FROM actuator WHERE trial_id = ?"};
+  row.bind(trial_id);
+  if (!row.step()) {
+    return std::nullopt;
+  }
+  StoredActuator stored{{row.real(0), row.real(1), row.real(2), row.real(3), row.real(4),
+                         row.integer(5), row.integer(6)},
+                        {}};
+  Statement chunk{database_,
+                  "SELECT codec, periods, samples, bytes FROM actuator_chunk WHERE trial_id = ? "
+                  "ORDER BY first_period"};
+  chunk.bind(trial_id);
+  while (chunk.step()) {
+    const std::string what = fmt::format("{}: actuator of trial {}", database_.file(), trial_id);
+    check_codec(chunk.text(0), actuator_codec, what);
+    ActuatorTrace read = decode_actuator(chunk.bytes(3), static_cast<std::size_t>(chunk.integer(1)),
+                                         static_cast<std::size_t>(chunk.integer(2)), what);
+    std::ranges::move(read.periods, std::back_inserter(stored.trace.periods));
+    std::ranges::move(read.samples, std::back_inserter(stored.trace.samples));
+  }
+  return stored;
+}
+
 // These functions make sure that a trial is stored: on the disk, in the file of the study's name,
 // whatever became of that file meanwhile.
 namespace fs = std::filesystem;

@@ -342,6 +342,34 @@ void Store::add_alternatives(std::int64_t trial_id,
   }
 }
 
+// A store that was begun before there were actuators goes on without.
+void Store::add_actuator(std::int64_t trial_id, const TrialRecord& record) {
+  if (!record.actuator || !has_tables_of_actuators()) {
+    return;
+  }
+  const ActuatorRow& actuator = *record.actuator;
+  Statement{database_, "INSERT INTO actuator VALUES (?, ?, ?, ?, ?, ?, ?, ?)"}
+      .bind(trial_id)
+      .bind(actuator.rate_hz)
+      .bind(actuator.delay_s)
+      .bind(actuator.full_scale_n)
+      .bind(actuator.last_n)
+      .bind(actuator.mean_square_n2)
+      .bind(actuator.ticks_lost)
+      .bind(actuator.dropped_periods)
+      .finish();
+  for (const ActuatorChunk& chunk : record.actuator_chunks) {
+    Statement{database_, "INSERT INTO actuator_chunk VALUES (?, ?, ?, ?, ?, ?)"}
+        .bind(trial_id)
+        .bind(chunk.first_period)
+        .bind(chunk.periods)
+        .bind(chunk.samples)
+        .bind(std::string{actuator_codec})
+        .bind(std::span<const std::byte>{chunk.bytes})
+        .finish();
+  }
+}
+
 void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
   add_alternatives(trial_id, record.alternatives);
   if (record.response) {
@@ -374,6 +402,7 @@ void Store::add_details(std::int64_t trial_id, const TrialRecord& record) {
         .bind(std::span<const std::byte>{chunk.bytes})
         .finish();
   }
+  add_actuator(trial_id, record);
   const TickStatisticsRow& statistics = record.statistics;
   Statement{database_, "INSERT INTO tick_statistics VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"}
       .bind(trial_id)

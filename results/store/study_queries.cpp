@@ -253,12 +253,15 @@ std::map<std::string, BlockCourseRow> block_courses(Store& store, Mode mode) {
   return courses;
 }
 
-std::vector<core::TraceSample> decoded_chunk(Statement& row, int column, const std::string& what) {
-  const std::string codec = row.text(column);
-  if (codec != trace_codec) {
+void check_codec(const std::string& codec, const char* known, const std::string& what) {
+  if (codec != known) {
     throw StoreError{
-        fmt::format("{} is encoded as '{}' (this program reads {})", what, codec, trace_codec)};
+        fmt::format("{} is encoded as '{}' (this program reads {})", what, codec, known)};
   }
+}
+
+std::vector<core::TraceSample> decoded_chunk(Statement& row, int column, const std::string& what) {
+  check_codec(row.text(column), trace_codec, what);
   return decode_trace(row.bytes(column + 2), static_cast<std::size_t>(row.integer(column + 1)),
                       what);
 }

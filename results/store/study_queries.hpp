@@ -43,6 +43,8 @@ using TakeChunk = std::function<void(std::int64_t trial_id, std::span<const core
 // run where sessions are simulated at once. Throws StoreError if a chunk cannot be decoded.
 void each_trace_chunk(Store& store, const TakeChunk& take);
 
+// Throws StoreError, naming `what` is encoded so, unless that is known.
+void check_codec(const std::string& codec, const char* known, const std::string& what);
 // The samples of a row of trace_chunk, whose columns from this one on are codec, ticks and bytes.
 // Throws StoreError, naming `what` they are, if they are of another codec or cannot be decoded.
 std::vector<core::TraceSample> decoded_chunk(Statement& row, int column, const std::string& what);

@@ -1,11 +1,14 @@
 #include "results/traces/trace_codec.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 
 #include "results/compression.hpp"
+#include "results/store_error.hpp"
 namespace tapstudy::results {
 namespace {
 using core::TraceSample;
@@ -138,5 +141,85 @@ std::vector<TraceSample> decode_trace(std::span<const std::byte> bytes, std::siz
     samples.push_back(unpacked(record));
   }
   return samples;
+}
+
+namespace {
+using core::ActuatorPeriod;
+constexpr std::size_t period_bytes = 32;
+using PeriodRecord = std::array<std::byte, period_bytes>;
+
+PeriodRecord packed(const ActuatorPeriod& p) {
+  PeriodRecord record{};
+  std::byte* to = record.data();
+  const auto put = [&](const auto& value) {
+    std::memcpy(to, &value, sizeof value);
+    to += sizeof value;
+  };
+  put(p.heard_at_ns);
+  put(p.frame_ns);
+  put(p.filled_at_ns);
+  put(p.ticks);
+  put(p.samples);
+  put(static_cast<std::uint8_t>(p.follows_gap));
+  put(static_cast<std::uint8_t>(p.is_heard));
+  return record;
+}
+
+ActuatorPeriod unpacked(const PeriodRecord& record) {
+  const std::byte* from = record.data();
+  const auto take = [&](auto& value) {
+    std::memcpy(&value, from, sizeof value);
+    from += sizeof value;
+  };
+  ActuatorPeriod p{};
+  std::uint8_t follows_gap{};
+  std::uint8_t is_heard{};
+  take(p.heard_at_ns);
+  take(p.frame_ns);
+  take(p.filled_at_ns);
+  take(p.ticks);
+  take(p.samples);
+  take(follows_gap);
+  take(is_heard);
+  p.follows_gap = follows_gap != 0;
+  p.is_heard = is_heard != 0;
+  return p;
+}
+}  // namespace
+
+std::vector<std::byte> encode_actuator(const ActuatorTrace& trace) {
+  std::vector<PeriodRecord> records;
+  for (const ActuatorPeriod& period : trace.periods) {
+    records.push_back(packed(period));
+  }
+  const std::size_t of_periods = records.size() * period_bytes;
+  std::vector<std::byte> rows(of_periods + trace.samples.size() * sizeof(float));
+  transpose(std::as_bytes(std::span{records}).data(), records.size(), period_bytes, rows.data());
+  transpose(std::as_bytes(std::span{trace.samples}).data(), trace.samples.size(), sizeof(float),
+            rows.data() + of_periods);
+  return compressed(rows);
+}
+
+ActuatorTrace decode_actuator(std::span<const std::byte> bytes, std::size_t periods,
+                              std::size_t samples, const std::string& what) {
+  const std::size_t of_periods = periods * period_bytes;
+  const std::vector<std::byte> rows =
+      decompressed(bytes, of_periods + samples * sizeof(float), what);
+  std::vector<PeriodRecord> records(periods);
+  ActuatorTrace trace;
+  trace.samples.resize(samples);
+  transpose(rows.data(), period_bytes, periods, std::as_writable_bytes(std::span{records}).data());
+  transpose(rows.data() + of_periods, sizeof(float), samples,
+            std::as_writable_bytes(std::span{trace.samples}).data());
+  std::size_t in_periods = 0;
+  for (const PeriodRecord& record : records) {
+    trace.periods.push_back(unpacked(record));
+    in_periods += trace.periods.back().samples;
+  }
+  if (in_periods != samples) {
+    throw StoreError{
+        fmt::format("{}: its periods have {} samples, not {}", what, in_periods, samples)};
+  }
+  return trace;
 }
 }  // namespace tapstudy::results

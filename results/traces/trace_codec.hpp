@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/haptics/haptic_state.hpp"
+#include "core/tick/actuator_tape.hpp"
 namespace tapstudy::results {
 inline constexpr const char* trace_codec = "tapstudy-trace/3";
 
@@ -20,4 +21,18 @@ std::vector<std::byte> encode_trace(std::span<const core::TraceSample> samples);
 // Throws StoreError, naming `what` they are, if the bytes are not `ticks` encoded samples.
 std::vector<core::TraceSample> decode_trace(std::span<const std::byte> bytes, std::size_t ticks,
                                             const std::string& what);
+
+inline constexpr const char* actuator_codec = "tapstudy-actuator/1";
+
+// What an actuator's card was given: periods, and all their samples one after the other, of which
+// full scale is from -1 to 1.
+struct ActuatorTrace {
+  std::vector<core::ActuatorPeriod> periods;
+  std::vector<float> samples;
+};
+// Lossless, as documented in trace_format.md.
+std::vector<std::byte> encode_actuator(const ActuatorTrace& trace);
+// Throws StoreError, naming `what` it is, if the bytes are not so many periods of so many samples.
+ActuatorTrace decode_actuator(std::span<const std::byte> bytes, std::size_t periods,
+                              std::size_t samples, const std::string& what);
 }  // namespace tapstudy::results

@@ -51,9 +51,49 @@ std::optional<double> first_contact_s(const std::vector<EventRow>& events) {
 
 namespace {
 constexpr std::size_t ticks_per_chunk = 4096;
+constexpr std::size_t periods_per_chunk = 4096;
 }  // namespace
 
+void ActuatorCollector::drain() {
+  core::ActuatorPeriod period{};
+  while (tape_->pop(period, pending_.samples)) {
+    pending_.periods.push_back(period);
+    const std::optional<std::int64_t> began_at_ns = began_at_();
+    if (pending_.periods.size() >= periods_per_chunk && began_at_ns) {
+      pack(*began_at_ns);
+    }
+  }
+}
+
+void ActuatorCollector::pack(std::int64_t began_at_ns) {
+  for (core::ActuatorPeriod& period : pending_.periods) {
+    period.heard_at_ns -= began_at_ns;
+    period.filled_at_ns -= began_at_ns;
+  }
+  const std::int64_t periods = std::ssize(pending_.periods);
+  chunks_.push_back({packed_, periods, std::ssize(pending_.samples), encode_actuator(pending_)});
+  packed_ += periods;
+  pending_ = {};
+}
+
+std::vector<ActuatorChunk> ActuatorCollector::finish() {
+  drain();
+  if (const auto began_at_ns = began_at_(); began_at_ns && !pending_.periods.empty()) {
+    pack(*began_at_ns);
+  }
+  return std::exchange(chunks_, {});
+}
+
+void TraceCollector::add(core::ActuatorTape& tape, ActuatorCollector::BeganAt began_at) {
+  if (traced_ == Traced::whole) {
+    actuator_.emplace(tape, std::move(began_at));
+  }
+}
+
 void TraceCollector::drain() {
+  if (actuator_) {
+    actuator_->drain();
+  }
   core::TraceSample sample{};
   while (ring_->try_pop(sample)) {
     collected_.duration_s = time_s(sample);
@@ -90,6 +130,12 @@ TraceCollector::Collected TraceCollector::finish() {
   drain();
   pack();
   events_ = {};
+  if (actuator_) {
+    std::vector<ActuatorChunk> chunks = actuator_->finish();
+    if (collected_.ticks > 0) {
+      collected_.actuator = std::move(chunks);
+    }
+  }
   if (traced_ == Traced::events_only) {
     collected_.events.insert(collected_.events.begin(), {0.0, untraced_event, 0.0});
   }

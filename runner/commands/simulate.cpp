@@ -4,8 +4,10 @@
 
 #include "core/error.hpp"
 #include "core/files/output_files.hpp"
+#include "core/files/sha256.hpp"
 #include "runner/commands/command_line.hpp"
 #include "runner/commands/shared_options.hpp"
+#include "runner/session/devices/rigs.hpp"
 #include "runner/session/engine/session_row.hpp"
 #include "runner/studies/shares/share_file.hpp"
 #include "runner/studies/simulated_study.hpp"
@@ -38,6 +40,9 @@ void simulate_share(SimulatedStudy study, const protocols::Protocol& protocol) {
   share.participants = study.participants;
   share.seed = study.seed;
   share.keeps_traces = study.keeps_traces;
+  if (!study.rig_file.empty()) {
+    share.inputs += " " + core::sha256(read_rig(study.rig_file).text);
+  }
   const std::string out = study.directory;
   write_complete_share(out, share, [&](const std::string& unfinished) {
     study.directory = unfinished;
@@ -73,6 +78,10 @@ void add_simulate(CommandParser& line) {
   command.shipped_file("protocol", study.protocol_file, "Study (YAML)");
   command.option("--participants", options->participants, participants_help);
   command.option_with_default("--seed", options->seed, "Seed of all random streams");
+  command.option(
+      "--rig", study.rig_file,
+      "Rig (YAML) of the simulated hand: its limits, and an actuator that is rendered with "
+      "it");
   command.option("--out", study.directory, "Directory of the study", Need::required);
   command.flag("--no-traces", options->leaves_traces_out,
                "Store answers and events only: faster and smaller, for questions of power");

@@ -343,7 +343,8 @@ std::string print_wrong(const std::vector<std::string>& wrong, const char* befor
 }
 
 // Returns a description of the fault, or an empty text.
-std::string print_recomputed(const results::Recomputation& recomputed) {
+std::string print_recomputed(const Verification& found) {
+  const results::Recomputation& recomputed = found.recomputed;
   std::string fault = print_wrong(recomputed.differences,
                                   "differs: ", "stored values that differ from those recomputed");
   fmt::print("recomputed       {} events from their traces, {} answers by their task's rule{}\n",
@@ -351,6 +352,10 @@ std::string print_recomputed(const results::Recomputation& recomputed) {
              recomputed.unknown_blocks == 0 ? ""
                                             : fmt::format(" ({} of blocks that the protocol lacks)",
                                                           recomputed.unknown_blocks));
+  if (found.actuator_samples > 0) {
+    fmt::print("                 {} samples of actuators, rendered from the traces again\n",
+               found.actuator_samples);
+  }
   return fault;
 }
 
@@ -405,11 +410,11 @@ void verify(const VerifyOptions& options) {
   for (const std::string& remark : found.remarks) {
     warn(remark);
   }
-  std::vector<std::string> wrong{print_recomputed(found.recomputed),
-                                 print_wrong(found.broken, "wrong: ", "rules that rows break"),
-                                 print_wrong(found.study_and_sessions, "differs: ",
-                                             "rows of the study and its sessions that differ"),
-                                 print_compared(found)};
+  std::vector<std::string> wrong{
+      print_recomputed(found), print_wrong(found.broken, "wrong: ", "rules that rows break"),
+      print_wrong(found.study_and_sessions,
+                  "differs: ", "rows of the study and its sessions that differ"),
+      print_compared(found)};
   if (found.is_sound()) {  // else a report made anew would be wrong, too
     wrong.push_back(print_published(published_report(options.directory, store)));
   }

@@ -185,7 +185,8 @@ class TapRecorder {
     const double frame_ns = 1e9 / tap_actuator_rate_hz;
     rendered_n.resize(samples);
     const auto period = std::span{rendered_n}.subspan(begin);
-    source_.fill(period, static_cast<double>(begin) * frame_ns, frame_ns, clock_.now());
+    source_.fill(period, std::llround(static_cast<double>(begin) * frame_ns), frame_ns,
+                 clock_.now());
     for (float& force_n : period) {
       force_n *= static_cast<float>(full_scale_n);
     }

@@ -19,6 +19,8 @@
 #include "results/store/recorder.hpp"
 #include "results/store/store.hpp"
 #include "results/store_error.hpp"
+#include "runner/session/devices/actuator_card.hpp"
+#include "runner/session/devices/device_kind.hpp"
 #include "runner/session/devices/rigs.hpp"
 #include "runner/session/engine/open_study.hpp"
 #include "runner/session/engine/remaining_trials.hpp"
@@ -127,16 +129,20 @@ struct SharedParts {
   const SimulatedStudy& study;
   const protocols::Protocol& protocol;
   const device::LoopSettings& settings;
+  const core::ActuatorOutput* actuator;  // nullptr: none that is stored
   ModelLibrary& models;
 };
 
 // The same person in every session.
 void run_participant(const SharedParts& shared, const SimulatedSessions& of_participant,
                      results::Recorder& recorder, Tapped& tapped) {
-  const auto& [study, protocol, settings, models] = shared;
+  const auto& [study, protocol, settings, actuator, models] = shared;
   SimulatedParticipant participant{protocol, settings, models, of_participant.seed};
   VirtualTrialLoop trial_loop{participant.hand(), settings,
                               study.keeps_traces ? Keep::trace : Keep::events};
+  if (actuator != nullptr) {
+    trial_loop.use(*actuator, protocol.rendering.dt_s);
+  }
   SimulatedReality reality{protocol, models, participant.hand(), settings};
   Operator nobody;
   bool stays = true;
@@ -146,9 +152,17 @@ void run_participant(const SharedParts& shared, const SimulatedSessions& of_part
                            const std::int64_t ticks = running == nullptr ? 0 : running->ticks();
                            return static_cast<double>(ticks) / rate_hz;
                          }};
-    TrialEngine engine{
-        {protocol, models, trial_loop, reality, participant, nobody, states, of_participant.seed},
-        recorder};
+    TrialEngine engine{{protocol,
+                        models,
+                        trial_loop,
+                        reality,
+                        participant,
+                        nobody,
+                        states,
+                        of_participant.seed,
+                        {},
+                        actuator},
+                       recorder};
     running = &engine;
     stays = stays && run_schedule(engine, session.schedule);
     tapped.ticks += engine.ticks();
@@ -175,6 +189,21 @@ void run_participants(const SharedParts& shared, const std::vector<SimulatedSess
 }
 }  // namespace
 
+namespace {
+protocols::Rig rig_of(const SimulatedStudy& study, const protocols::Protocol& protocol) {
+  if (study.rig_file.empty()) {
+    return simulated_rig();
+  }
+  protocols::Rig rig = read_rig(study.rig_file);
+  if (&kind_of(rig) != &simulated_hand()) {
+    throw core::InvalidInput{fmt::format(
+        "{}: is no rig of simulated participants (device: simulated_hand)", study.rig_file)};
+  }
+  check_fits(protocol, rig);
+  return rig;
+}
+}  // namespace
+
 SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol) {
   ModelLibrary models;
   return simulate(study, protocol, models);
@@ -183,7 +212,7 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
 SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& protocol,
                        ModelLibrary& models) {
   const auto start = std::chrono::steady_clock::now();
-  const protocols::Rig rig = simulated_rig();
+  const protocols::Rig rig = rig_of(study, protocol);
   const device::LoopSettings settings = loop_settings(protocol, rig);
   models.build_all(protocol);
   const bool is_new = !results::Store::has_database(study.directory);
@@ -198,7 +227,9 @@ SimulatedTime simulate(const SimulatedStudy& study, const protocols::Protocol& p
   }
   Tapped tapped;
   try {
-    run_participants({study, protocol, settings, models}, participants, store, tapped);
+    const core::ActuatorOutput* const actuator =
+        study.keeps_traces && protocol.stores_actuator ? actuator_of(protocol, rig) : nullptr;
+    run_participants({study, protocol, settings, actuator, models}, participants, store, tapped);
   } catch (...) {
     try {
       store.resume_sync();

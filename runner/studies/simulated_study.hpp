@@ -15,6 +15,7 @@ struct SimulatedStudy {
   std::string progress{};   // what to say of it on the terminal; empty: nothing
   unsigned threads{};       // 0: as many as keep all processors busy
   Share share{};            // of the participants
+  std::string rig_file{};   // of the simulated hand; empty: 10 N, without an actuator
 };
 struct SimulatedTime {
   int trials{};

@@ -15,6 +15,7 @@
 #include "results/store_error.hpp"
 #include "runner/session/engine/open_study.hpp"
 #include "runner/session/engine/stored_names.hpp"
+#include "runner/studies/actuator_verification.hpp"
 #include "runner/studies/session_times.hpp"
 #include "runner/studies/stored_course.hpp"
 #include "runner/studies/stored_study.hpp"
@@ -118,6 +119,10 @@ Verification verification_of(results::Store& store, const std::string& directory
   if (protocol) {
     check_by_protocol(store, *protocol, found);
   }
+  ActuatorVerification actuators = checked_actuators(store, protocol);
+  found.actuator_samples = actuators.samples;
+  std::ranges::move(actuators.differences, std::back_inserter(found.recomputed.differences));
+  std::ranges::move(actuators.remarks, std::back_inserter(found.remarks));
   CheckedTimes times = checked_session_times(store);
   std::ranges::move(times.wrong, std::back_inserter(found.broken));
   std::ranges::move(times.unlikely, std::back_inserter(found.remarks));

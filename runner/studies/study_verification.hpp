@@ -12,6 +12,7 @@ struct Verification {
   std::int64_t answers{};  // in the database
   std::int64_t journalled_answers{};
   results::Recomputation recomputed;
+  std::int64_t actuator_samples{};  // rendered again
   // Rows of the database that break a rule (row_rules.hpp), name what the protocol lacks
   // (stored_names.hpp) or are not of a session's course (stored_course.hpp).
   std::vector<std::string> broken;

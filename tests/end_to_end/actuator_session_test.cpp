@@ -6,6 +6,7 @@
 #include <complex>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -44,6 +45,28 @@ std::string sql(const TempDirectory& directory, const std::string& query) {
       .standard_output;
 }
 
+// Of an exported file of an actuator's samples.
+std::vector<double> commands_in(const std::string& file, double full_scale_n) {
+  std::istringstream lines{testing::contents(file)};
+  std::vector<double> samples;
+  double heard_s = 0.0;
+  double command_n = 0.0;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::sscanf(line.c_str(), "%lf,%lf", &heard_s, &command_n) == 2) {
+      samples.push_back(command_n / full_scale_n);
+    }
+  }
+  return samples;
+}
+
+// Without the silence before and after.
+std::span<const double> sound_of(const std::vector<double>& samples) {
+  const auto is_heard = [](double sample) { return sample != 0.0; };
+  const auto first = std::ranges::find_if(samples, is_heard);
+  const auto last = std::find_if(samples.rbegin(), samples.rend(), is_heard);
+  return first == samples.end() ? std::span<const double>{} : std::span{first, last.base()};
+}
+
 // Sounds with silence of 2 ms between them.
 int sounds_in(const std::vector<double>& samples) {
   const std::size_t silence = 96;
@@ -79,7 +102,54 @@ TEST_CASE("each impact of a session is heard from the actuator, on its channel a
       "SELECT count(*) FROM event JOIN trial USING (trial_id) WHERE kind = 'impact'";
   CHECK(sounds >= std::stoi(sql(directory, impacts)));
   CHECK(sounds >= 8);
+  const auto verified = testing::tapstudy({"verify", directory / "the_study"});
+  INFO(verified.standard_error << verified.standard_output);
+  CHECK(verified.exit_code == 0);
+  CHECK_THAT(verified.standard_output, Contains(" samples of actuators, rendered from the traces"));
+  // the card's file is what it was given; each trial's samples are a part of it
+  const auto exported = testing::tapstudy(
+      {"export", directory / "the_study", "--out", directory / "out", "--traces"});
+  REQUIRE(exported.exit_code == 0);
+  const std::vector<double> given = testing::channel_of(played, 1);
+  constexpr double step_of_card = 1.0 / 2147483647.0;
+  for (int trial = 1; trial <= 8; ++trial) {
+    const std::vector<double> stored =
+        commands_in(directory / fmt::format("out/actuator/trial_{:06}.csv", trial), 20.0);
+    const auto sound = sound_of(stored);
+    CAPTURE(trial, stored.size(), sound.size());
+    CHECK(sound.size() > 100);
+    CHECK_FALSE(std::ranges::search(given, sound, [](double a, double b) {
+                  return std::abs(a - b) <= step_of_card;
+                }).empty());
+  }
+  const auto read = testing::run_program({"/usr/bin/python3",
+                                          testing::source("tests/results/export/traces_match.py"),
+                                          directory / "the_study", directory / "out"});
+  INFO(read.standard_error);
+  CHECK(read.exit_code == 0);
+}
+
+TEST_CASE("a simulated study has what an actuator would have been given, if its protocol says so",
+          "[end_to_end][actuator]") {
+  const TempDirectory directory;
+  const std::string study = divided_study(directory);
+  const std::string with = rig(directory, "{full_scale_n: 20}");
+  const bool is_stored = GENERATE(true, false);
+  if (!is_stored) {
+    testing::write(study, testing::replaced(testing::contents(study), "crossover_hz:",
+                                            "stores_actuator: false\n  crossover_hz:"));
+  }
+  const auto simulated = testing::tapstudy(
+      {"simulate", study, "--participants", "1", "--rig", with, "--out", directory / "the_study"});
+  INFO(simulated.standard_error);
+  REQUIRE(simulated.exit_code == 0);
+  CHECK(sql(directory, "SELECT count(*) FROM actuator") == (is_stored ? "8\n" : "0\n"));
   CHECK(testing::tapstudy({"verify", directory / "the_study"}).exit_code == 0);
+  const auto refused =
+      testing::tapstudy({"simulate", study, "--participants", "1", "--rig",
+                         testing::shipped("rigs/remote.yaml"), "--out", directory / "another"});
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.standard_error, Contains("device: simulated_hand"));
 }
 
 TEST_CASE("a study that leaves vibration to an actuator is refused where none can render it",

@@ -13,9 +13,6 @@ namespace tapstudy::runner {
 namespace {
 // A card's own filter falls off beyond.
 constexpr double max_band_of_rate = 0.45;
-// Periods as short as ALSA's cards take, and a buffer of as few as a desktop plays without a gap.
-constexpr double shortest_period_s = 0.001;
-constexpr int fewest_periods = 3;
 }  // namespace
 
 void check_actuator(const protocols::Protocol& protocol, const protocols::Rig& rig) {
@@ -45,8 +42,8 @@ const core::ActuatorOutput* actuator_of(const protocols::Protocol& protocol,
 std::unique_ptr<device::PcmSink> open_actuator_card(const core::ActuatorOutput& actuator) {
   auto card = device::open_alsa({.card = actuator.card,
                                  .rate_hz = actuator.rate_hz,
-                                 .period_s = shortest_period_s,
-                                 .periods = fewest_periods,
+                                 .period_s = device::actuator_period_s,
+                                 .periods = device::actuator_buffer_periods,
                                  .channels = actuator.channels,
                                  .only_channel = actuator.channel - 1});
   const double delay_s = device::actuator_delay_s(*card);
@@ -67,6 +64,6 @@ std::unique_ptr<device::ActuatorPlayer> actuator_player(const core::ActuatorOutp
       open_actuator_card(actuator),
       device::ActuatorPlayer::Settings{actuator.full_scale_n, actuator.limits,
                                        protocol.rendering.dt_s, actuator.max_gaps,
-                                       device::below(rig.realtime)});
+                                       device::below(rig.realtime), protocol.stores_actuator});
 }
 }  // namespace tapstudy::runner

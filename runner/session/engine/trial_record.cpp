@@ -99,6 +99,10 @@ results::TrialRecord trial_record(std::int64_t session_id, const protocols::Plan
                        to_text(result.loop.stopped_by)};
   record.events = std::move(result.trace.events);
   record.trace = std::move(result.trace.chunks);
+  if (!result.trace.actuator.empty()) {
+    record.actuator = result.actuator;
+    record.actuator_chunks = std::move(result.trace.actuator);
+  }
   return record;
 }
 }  // namespace tapstudy::runner

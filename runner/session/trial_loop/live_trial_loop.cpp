@@ -59,6 +59,7 @@ class Following {
 };
 }  // namespace
 
+namespace {
 // RAII: the actuator renders a trial's voices during this object's lifetime.
 class Actuating {
  public:
@@ -73,12 +74,22 @@ class Actuating {
       player_->end();
     }
   }
-  // The trial is over.
-  void add_events(device::Nanoseconds began_at, std::vector<results::EventRow>& events) const {
-    if (player_ == nullptr) {
-      return;
+  // The trial is over: all is heard of it.
+  std::optional<device::Actuated> end() const {
+    return player_ == nullptr ? std::nullopt : std::optional{player_->end()};
+  }
+  void add_to(TrialResult& result, const device::Actuated& actuated,
+              device::Nanoseconds began_at) const {
+    if (const core::ActuatorTape* const tape = player_->tape()) {
+      result.actuator = results::ActuatorRow{player_->rate_hz(),
+                                             player_->delay_s(),
+                                             player_->full_scale_n(),
+                                             actuated.before.last_n,
+                                             actuated.before.mean_square_n2,
+                                             actuated.ticks_lost,
+                                             tape->dropped()};
     }
-    const device::Actuated actuated = player_->end();
+    std::vector<results::EventRow>& events = result.trace.events;
     events.insert(events.begin(), {{0.0, "actuator", player_->delay_s()},
                                    {0.0, "actuator_jitter", actuated.jitter_s},
                                    {0.0, "actuator_rate_error", actuated.rate_error}});
@@ -102,6 +113,7 @@ class Actuating {
  private:
   device::ActuatorPlayer* player_;
 };
+}  // namespace
 
 TrialResult LiveTrialLoop::run(const Rendered& rendered, const Explore& explore) {
   core::SpscRing<core::TraceSample> ring{ring_capacity};
@@ -121,6 +133,12 @@ TrialResult LiveTrialLoop::run(const Rendered& rendered, const Explore& explore)
       throw device::DeviceError{fmt::format("the actuator plays no more ({})", loss->why)};
     }
     loop.use(actuator_->link());
+    if (core::ActuatorTape* const tape = actuator_->tape()) {
+      collector.add(*tape, [&loop]() -> std::optional<std::int64_t> {
+        const device::Nanoseconds began_at = loop.began_at();
+        return began_at == 0 ? std::nullopt : std::optional{began_at};
+      });
+    }
   }
   const Actuating actuating{actuator_, rendered.voices};
   std::atomic<bool> has_ended{false};
@@ -135,8 +153,11 @@ TrialResult LiveTrialLoop::run(const Rendered& rendered, const Explore& explore)
     explore(exploration);
   }  // the haptic thread has commanded zero force and ended
   stop_ = loop.report().stop;
+  const std::optional<device::Actuated> actuated = actuating.end();
   TrialResult result{collector.finish(), loop.report(), static_cast<std::int64_t>(ring.dropped())};
-  actuating.add_events(loop.began_at(), result.trace.events);
+  if (actuated) {
+    actuating.add_to(result, *actuated, loop.began_at());
+  }
   return result;
 }
 

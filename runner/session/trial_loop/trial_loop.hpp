@@ -3,6 +3,7 @@
 #include <span>
 #include <utility>
 
+#include "core/settings/actuator_settings.hpp"
 #include "core/tick/actuator_voice.hpp"
 #include "core/tick/tap_renderer.hpp"
 #include "device/hand/scripted_hand.hpp"
@@ -15,6 +16,7 @@ struct TrialResult {
   results::TraceCollector::Collected trace;
   device::LoopReport loop;
   std::int64_t dropped_samples{};
+  std::optional<results::ActuatorRow> actuator{};  // of trace.actuator
 };
 
 // A trial's haptic loop renders these, to the taps of the hand at the device or to scripted ones,
@@ -62,11 +64,18 @@ class VirtualTrialLoop final : public TrialLoop {
  public:
   VirtualTrialLoop(device::Device& device, device::LoopSettings settings, Keep keep = Keep::trace)
       : device_{device}, settings_{std::move(settings)}, keep_{keep} {}
+  // What it plays is rendered and kept with each trace. tick_s: of the loop.
+  void use(const core::ActuatorOutput& actuator, double tick_s) {
+    actuator_ = &actuator;
+    tick_s_ = tick_s;
+  }
   TrialResult run(const Rendered& rendered, const Explore& explore) override;
 
  private:
   device::Device& device_;
   device::LoopSettings settings_;
   Keep keep_;
+  const core::ActuatorOutput* actuator_{nullptr};
+  double tick_s_{};
 };
 }  // namespace tapstudy::runner

@@ -69,7 +69,7 @@ class InStep {
         tick(now_ns_ == impact_ns_, alternative_);
       }
       std::vector<float> period(period_frames);
-      source_.fill(period, static_cast<double>(now_ns_ + buffered_ns), 1e9 / card_hz, now_ns_);
+      source_.fill(period, now_ns_ + buffered_ns, 1e9 / card_hz, now_ns_);
       samples_.insert(samples_.end(), period.begin(), period.end());
       now_ns_ += tick_ns;
     }
@@ -121,7 +121,7 @@ TEST_CASE("an impact is heard a fixed delay after its tick, to the sample", "[de
       source.ticks().try_push(touching(next_tick_ns, next_tick_ns == impact_at_ns));
     }
     std::vector<float> period(period_frames);
-    source.fill(period, heard_ns, frame_ns, now_ns);
+    source.fill(period, std::llround(heard_ns), frame_ns, now_ns);
     samples.insert(samples.end(), period.begin(), period.end());
   }
   const auto first = std::ranges::find_if(samples, [](float sample) { return sample != 0.0F; });
@@ -199,7 +199,7 @@ TEST_CASE("no sample is above the actuator's limit or its full scale", "[device]
   source.use(voices);
   source.ticks().try_push(touching(0, true));
   std::vector<float> samples(period_frames);
-  source.fill(samples, 0.0, 1e9 / card_hz, 0);
+  source.fill(samples, 0, 1e9 / card_hz, 0);
   CHECK(std::ranges::max(samples) <= static_cast<float>(std::min(peak_n, 0.04) / 0.04));
   CHECK(-std::ranges::min(samples) == Approx(std::min(peak_n, 0.04) / 0.04));
   CHECK(source.limited() > 0);
@@ -213,7 +213,7 @@ TEST_CASE("rendering the actuator's samples allocates nothing", "[device][actuat
   const testing::AllocationCount allocations;
   for (std::int64_t i = 0; i < 200; ++i) {
     source.ticks().try_push(touching(i * tick_ns, i % 20 == 0, i > 100 ? 1 : 0));
-    source.fill(samples, 1e6 * static_cast<double>(i + 3), 1e9 / card_hz, i * tick_ns);
+    source.fill(samples, (i + 3) * tick_ns, 1e9 / card_hz, i * tick_ns);
   }
   source.use({});
   CHECK(allocations.count() == 0);

@@ -31,6 +31,13 @@ def main(study, export):
             assert equal.all(), f"{file}: {name} differs at tick {numpy.argmin(equal)}"
         ticks += len(stored)
     print(len(files), "trials", ticks, "ticks")
+    for file in sorted(glob.glob(f"{export}/actuator/*.csv")):
+        frame = pandas.read_csv(file, float_precision="round_trip")
+        stored = read_trace.actuator(f"{study}/study.db", int(file[-10:-4]))
+        assert list(frame.columns) == list(stored.dtype.names), frame.columns
+        assert len(frame) == len(stored) > 0, file
+        for name in stored.dtype.names:
+            assert (frame[name].to_numpy() == stored[name]).all(), f"{file}: {name}"
 
 
 main(*sys.argv[1:])

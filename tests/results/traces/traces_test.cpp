@@ -167,3 +167,89 @@ TEST_CASE("an impact up to 5 ms after a late tick is noted as one, and no other 
     CHECK(late->t_s == Approx(0.04 + 0.001 * ticks_after));
   }
 }
+
+namespace {
+results::ActuatorTrace wild_periods(std::size_t count) {
+  core::Rng rng{3};
+  results::ActuatorTrace trace;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto samples = static_cast<std::uint16_t>(rng.below(200));
+    trace.periods.push_back({static_cast<std::int64_t>(i) * 1'000'017 - 3'000'000,
+                             1e9 / 48'000.0 * (1.0 + 1e-6 * rng.normal()),
+                             static_cast<std::int64_t>(rng.below(1U << 30U)), rng.below(1U << 31U),
+                             samples, rng.below(2) == 1, rng.below(2) == 1});
+    for (int j = 0; j < samples; ++j) {
+      trace.samples.push_back(static_cast<float>(rng.normal()));
+    }
+  }
+  return trace;
+}
+bool same(const core::ActuatorPeriod& a, const core::ActuatorPeriod& b) {
+  return a.heard_at_ns == b.heard_at_ns && same_bits(a.frame_ns, b.frame_ns) &&
+         a.filled_at_ns == b.filled_at_ns && a.ticks == b.ticks && a.samples == b.samples &&
+         a.follows_gap == b.follows_gap && a.is_heard == b.is_heard;
+}
+}  // namespace
+
+TEST_CASE("what an actuator was given comes back to the last bit", "[results][codec][actuator]") {
+  const std::size_t count = GENERATE(0U, 1U, 9U, 700U);
+  const results::ActuatorTrace trace = wild_periods(count);
+  const auto bytes = results::encode_actuator(trace);
+  const auto decoded = results::decode_actuator(bytes, count, trace.samples.size(), "it");
+  CHECK(std::ranges::equal(decoded.periods, trace.periods, same));
+  CHECK(decoded.samples == trace.samples);
+  CHECK_THROWS_AS(results::decode_actuator(bytes, count + 1, trace.samples.size(), "it"),
+                  results::StoreError);
+  if (trace.samples.size() > 8) {  // bytes enough for a period more, of samples too few
+    CHECK_THROWS_WITH(results::decode_actuator(bytes, count + 1, trace.samples.size() - 8, "it"),
+                      Contains("its periods have"));
+  }
+}
+
+TEST_CASE("an actuator's periods are kept from the first on, at times from the first tick",
+          "[results][collector][actuator]") {
+  const bool has_ticks = GENERATE(true, false);
+  core::ActuatorTape tape{8, 100};
+  core::SpscRing<TraceSample> ring{16};
+  results::TraceCollector collector{ring};
+  std::optional<std::int64_t> began_at_ns;
+  collector.add(tape, [&] { return began_at_ns; });
+  const std::vector<float> samples{0.5F, -0.5F};
+  tape.push({.heard_at_ns = 5'000'000}, samples);
+  collector.drain();  // the loop has not begun
+  began_at_ns = 7'000'000;
+  tape.push({.heard_at_ns = 6'000'000, .ticks = 1, .is_heard = true}, samples);
+  if (has_ticks) {
+    ring.try_push(TraceSample{});
+  }
+  const auto collected = collector.finish();
+  REQUIRE(collected.actuator.size() == (has_ticks ? 1 : 0));
+  if (has_ticks) {
+    const results::ActuatorChunk& chunk = collected.actuator.front();
+    CHECK(chunk.periods == 2);
+    const auto trace = results::decode_actuator(chunk.bytes, 2, 4, "it");
+    CHECK(trace.periods[0].heard_at_ns == -2'000'000);
+    CHECK(trace.periods[1].heard_at_ns == -1'000'000);
+    CHECK(trace.samples == std::vector<float>{0.5F, -0.5F, 0.5F, -0.5F});
+  }
+}
+
+TEST_CASE("a tape that was full drops what comes after, and counts it", "[core][actuator]") {
+  core::ActuatorTape tape{4, 8};
+  const std::vector<float> samples(3, 1.0F);
+  for (int i = 0; i < 5; ++i) {
+    tape.push({}, samples);  // the third does not fit
+  }
+  CHECK(tape.dropped() == 3);
+  core::ActuatorPeriod period;
+  std::vector<float> popped;
+  while (tape.pop(period, popped)) {
+  }
+  CHECK(popped.size() == 6);
+  tape.push({}, samples);  // there is room, but a gap before it
+  CHECK_FALSE(tape.pop(period, popped));
+  tape.begin();
+  tape.push({}, samples);
+  CHECK(tape.pop(period, popped));
+  CHECK(tape.dropped() == 0);
+}

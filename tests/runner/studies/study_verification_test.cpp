@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -17,6 +18,7 @@
 #include "results/export/study_export.hpp"
 #include "results/journal/journal.hpp"
 #include "results/store_error.hpp"
+#include "results/traces/trace_codec.hpp"
 #include "runner/session/devices/rigs.hpp"
 #include "runner/session/engine/alternative_rows.hpp"
 #include "runner/session/engine/between_trials.hpp"
@@ -39,6 +41,7 @@ finger: {mass_kg: 0.058, stiffness_n_per_m: 300, damping_n_s_per_m: 3}
 rendering:
   rate_hz: 1000
   band_limit_hz: 300
+  crossover_hz: [180, 220]
   penalty_stiffness_n_per_m: 3000
   sinusoid: {amplitude_n_s_per_m: 3, decay_per_s: 600, frequency_hz: 250}
 placement: {origin_m: [0, 0, 0], lateral_scale: 0.1}
@@ -191,11 +194,17 @@ class ChangedStudy {
 
  private:
   std::string protocol_file() const { return directory_ / "every_table_once.yaml"; }
+  std::string rig_file() const { return directory_ / "rig.yaml"; }
   protocols::Protocol write_protocol() {
     testing::write(protocol_file(), every_table_once);
     protocols::Protocol protocol = protocols::read_protocol(protocol_file());
     results::Store::open_or_create(path(), row_of(protocol));  // with the surface
-    runner::simulate({.protocol_file = protocol_file(), .directory = path(), .participants = 1},
+    testing::write(rig_file(), testing::contents(testing::shipped("rigs/simulated_hand.yaml")) +
+                                   "\nactuator: {full_scale_n: 20, max_rms_force_n: 0.2}\n");
+    runner::simulate({.protocol_file = protocol_file(),
+                      .directory = path(),
+                      .participants = 1,
+                      .rig_file = rig_file()},
                      protocol);
     return protocol;
   }
@@ -287,6 +296,55 @@ TEST_CASE("an untouched study of every table is sound", "[runner][verify]") {
   CHECK(found.is_sound());
   CHECK(found.remarks.empty());
   CHECK(found.answers == 7);
+}
+
+namespace {
+// What verification says once a trial's samples, or the times of its periods, are others.
+std::string said_of_actuator(const std::function<void(results::ActuatorTrace&)>& change) {
+  ChangedStudy& study = changed_study();
+  const std::int64_t trial = std::stol(
+      study.rows("SELECT trial_id FROM actuator_chunk ORDER BY length(bytes) DESC", 1)[0][0]);
+  results::ActuatorTrace trace = study.store().actuator(trial)->trace;
+  change(trace);
+  study.store().query("BEGIN").finish();
+  study.store().query("DELETE FROM actuator_chunk WHERE trial_id = ?").bind(trial).finish();
+  study.store()
+      .query("INSERT INTO actuator_chunk VALUES (?, 0, ?, ?, ?, ?)")
+      .bind(trial)
+      .bind(std::ssize(trace.periods))
+      .bind(std::ssize(trace.samples))
+      .bind(std::string{results::actuator_codec})
+      .bind(std::span<const std::byte>{results::encode_actuator(trace)})
+      .finish();
+  const runner::Verification found = runner::verification_of(study.store(), study.path());
+  study.store().query("ROLLBACK").finish();
+  return fmt::format("{}", fmt::join(found.recomputed.differences, "\n"));
+}
+}  // namespace
+
+TEST_CASE("what an actuator was given follows from the trace and the times of its periods",
+          "[runner][verify][actuator]") {
+  CHECK(changed_study().before().actuator_samples > 10'000);
+  CHECK(said_of_actuator([](auto& /*trace*/) {}).empty());
+  const auto loudest = [](results::ActuatorTrace& trace) -> float& {
+    return *std::ranges::max_element(trace.samples, {},
+                                     [](float sample) { return std::abs(sample); });
+  };
+  CHECK_THAT(said_of_actuator([&](auto& trace) { loudest(trace) *= 0.999F; }),
+             Contains("sample of the actuator at ") && Contains(", recomputed "));
+  CHECK_THAT(said_of_actuator([](auto& trace) {
+               for (core::ActuatorPeriod& period : trace.periods) {
+                 period.heard_at_ns += 50'000;
+               }
+             }),
+             Contains("sample of the actuator at "));
+  CHECK_THAT(said_of_actuator([](auto& trace) { trace.periods.back().ticks += 1; }),
+             Contains("actuator: ticks told is "));
+  CHECK_THAT(said_of_actuator([](auto& trace) {
+               trace.samples.resize(trace.samples.size() - trace.periods.back().samples);
+               trace.periods.pop_back();
+             }),
+             Contains("actuator is there in part, recomputed heard to its end"));
 }
 
 TEST_CASE("a simulation of which a session never began is called unfinished", "[runner][verify]") {

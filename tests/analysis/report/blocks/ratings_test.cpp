@@ -1,3 +1,4 @@
+#include "analysis/report/document/wording.hpp"
 #include "core/error.hpp"
 #include "support/catch.hpp"
 #include "support/formats.hpp"
@@ -113,6 +114,19 @@ TEST_CASE("who did not rate every stimulus is left out of tests and named", "[an
   CHECK(formats.json["friedman"] == whole["friedman"]);
   CHECK(formats.json["stimuli"][0]["rated_1"] == 1);
   CHECK_THAT(formats.text, Contains("without ratings of every stimulus: incomplete"));
+}
+
+TEST_CASE("what all rate alike is a result as any other, without an interval",
+          "[analysis][rated]") {
+  std::vector<results::AnswerRow> answers = all_answers();
+  for (results::AnswerRow& answer : answers) {
+    answer.response = answer.stimulus == "steel" ? "7" : answer.response;
+  }
+  const auto summary = find_statistic(statistic).summarise(design_of(), {answers, {}});
+  REQUIRE(summary->main_results.size() == names.size());
+  CHECK(in_words(summary->main_results[0], 6) ==
+        "mean of participants' median ratings: steel 7 for all, of 6");
+  CHECK(summary->main_results[1].range);
 }
 
 TEST_CASE("ratings that cannot be tested say why", "[analysis][rated]") {

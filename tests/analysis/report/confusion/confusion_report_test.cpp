@@ -325,6 +325,27 @@ TEST_CASE("contrasts, learning and medians are those that R computes from the an
   CHECK(json["response_times"][0]["quartile_low_s"].get<double>() == Approx(r[7]).epsilon(1e-9));
 }
 
+TEST_CASE("a contrast that is 0 whatever is answered is not tested", "[analysis][identification]") {
+  BlockDesign design = four_plates();
+  design.stimuli = {design.stimuli.front(), design.stimuli.back()};
+  design.responses = design.stimuli;
+  std::vector<results::AnswerRow> answers = answers_of(four_plates(), 7, 6, 0.5, 9);
+  std::erase_if(answers, [&](const results::AnswerRow& answer) {
+    const auto is_there = [&](const std::string& name) {
+      return name == design.stimuli[0].name || name == design.stimuli[1].name;
+    };
+    return !is_there(answer.stimulus) || !is_there(answer.response);
+  });
+  // each presented as often as the other to everybody
+  std::map<std::pair<std::string, std::string>, int> counts;
+  std::erase_if(answers, [&](const results::AnswerRow& answer) {
+    return ++counts[{answer.participant_id, answer.stimulus}] > 1;
+  });
+  const auto formats = reported(statistic, design, answers);
+  CHECK(formats.json["contrasts"].empty());
+  CHECK_THAT(formats.html, Contains("Not tested, as the difference is 0 for each participant"));
+}
+
 TEST_CASE("a habit that all share is no difference between the levels of a factor",
           "[analysis][identification][slow]") {
   constexpr int studies = 400;

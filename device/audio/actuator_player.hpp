@@ -17,11 +17,11 @@
 namespace tapstudy::device {
 // What became of the actuator's samples since the latest begin(); the clock's, of the session.
 struct Actuated : PlayedPeriods {
-  ActuatorSource::Before before{};  // the trial
-  std::int64_t limited{};           // samples that the limits changed
-  std::int64_t ticks_lost{};        // of the loop
-  double rate_error{};              // of the card, against the loop's clock
-  double jitter_s{};                // of the measured times of its periods
+  ActuatorSource::Before before{};   // the trial
+  std::int64_t limited{};            // samples that the limits changed
+  std::int64_t ticks_lost{};         // of the loop
+  double rate_error{};               // of the card, against the loop's clock
+  std::optional<double> jitter_s{};  // of the measured times of its periods; as SampleClock
 };
 
 // A card's period, as short as ALSA's cards take, and a buffer of as few of them as a desktop plays

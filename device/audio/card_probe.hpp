@@ -18,8 +18,8 @@ struct ProbedCard {
   // empty where the card does not tell what it has played.
   LatenessCount lateness{};
   std::int64_t gaps{};
-  double rate_error{};  // of the card, against the loop's clock
-  double jitter_s{};    // as SampleClock
+  double rate_error{};               // of the card, against the loop's clock
+  std::optional<double> jitter_s{};  // as SampleClock
   std::optional<AudioLoss> loss{};
   // A period that is later than this comes after a gap.
   Nanoseconds bridged() const;

@@ -34,7 +34,9 @@ void SampleClock::measured(double heard_at_ns) noexcept {
   }
 }
 
-double SampleClock::jitter_s() const noexcept {
-  return counted_ == 0 ? 0.0 : 1e-9 * std::sqrt(squares_ns2_ / static_cast<double>(counted_));
+std::optional<double> SampleClock::jitter_s() const noexcept {
+  return counted_ == 0
+             ? std::nullopt
+             : std::optional{1e-9 * std::sqrt(squares_ns2_ / static_cast<double>(counted_))};
 }
 }  // namespace tapstudy::device

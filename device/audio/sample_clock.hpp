@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 namespace tapstudy::device {
 // When the samples of a card are heard, by the clock of the haptic loop: a delay-locked loop over
 // the times measured once a period, which wander with the scheduler (Adriaensen 2005, Using a DLL
@@ -21,8 +22,9 @@ class SampleClock {
   double frame_ns() const noexcept { return period_ns_ / frames_; }
   // The card's rate against this clock, less 1.
   double rate_error() const noexcept { return nominal_ns_ / period_ns_ - 1.0; }
-  // Root of the mean square of e since the start, whose first second is left out.
-  double jitter_s() const noexcept;
+  // Root of the mean square of e, the first second after each gap left out; unset: there is no
+  // more.
+  std::optional<double> jitter_s() const noexcept;
 
  private:
   double frames_;

@@ -58,8 +58,10 @@ void print(const DiagnosedCard& card, const core::ActuatorOutput& actuator) {
   fmt::print("\nactuator   card {}, {} Hz: period {:.2f} ms, buffer {:.2f} ms, delay {:.2f} ms\n",
              actuator.card, idle.rate_hz, 1e3 * idle.period_s, 1e3 * idle.buffer_s,
              1e3 * idle.delay_s);
-  fmt::print("its clock  jitter {:.1f} us, drift {:+.1f} ppm against the loop's\n",
-             1e6 * idle.jitter_s, 1e6 * idle.rate_error);
+  fmt::print("its clock  jitter {}, drift {:+.1f} ppm against the loop's\n",
+             idle.jitter_s ? fmt::format("{:.1f} us", 1e6 * *idle.jitter_s)
+                           : "not measured (it takes more than a second without a gap)",
+             1e6 * idle.rate_error);
   if (idle.lateness.count() == 0) {
     fmt::print(
         "its gaps   {} idle, {} under load; lateness unknown: it does not tell what it has "

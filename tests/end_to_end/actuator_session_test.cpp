@@ -188,7 +188,8 @@ TEST_CASE("doctor measures the actuator's card as it measures the loop",
                                   testing::file_card(directory / "played.raw")))});
   CHECK_THAT(result.standard_output,
              Contains("48000 Hz: period 1.00 ms, buffer 3.00 ms, delay 4.00 ms"));
-  CHECK_THAT(result.standard_output, Contains("ppm against the loop's"));
+  CHECK_THAT(result.standard_output,
+             Contains("jitter not measured") && Contains("ppm against the loop's"));
   CHECK_THAT(result.standard_output, Contains("its gaps   0 idle, 0 under load"));
   CHECK(sounds_in(testing::channel_of(directory / "played.raw", 0)) == 0);
 }

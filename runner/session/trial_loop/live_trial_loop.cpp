@@ -91,8 +91,10 @@ class Actuating {
     }
     std::vector<results::EventRow>& events = result.trace.events;
     events.insert(events.begin(), {{0.0, "actuator", player_->delay_s()},
-                                   {0.0, "actuator_jitter", actuated.jitter_s},
                                    {0.0, "actuator_rate_error", actuated.rate_error}});
+    if (actuated.jitter_s) {
+      events.insert(events.begin() + 1, {0.0, "actuator_jitter", *actuated.jitter_s});
+    }
     if (actuated.underruns > 0) {
       events.push_back({0.0, "actuator_underrun", static_cast<double>(actuated.underruns)});
     }

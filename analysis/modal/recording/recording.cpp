@@ -14,6 +14,7 @@
 #include "analysis/modal/recording/instrument_table.hpp"
 #include "analysis/modal/recording/sampling.hpp"
 #include "analysis/statistics/csv_rows.hpp"
+#include "analysis/statistics/text_encoding.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
@@ -168,12 +169,32 @@ std::size_t data_column(const Table& table, const ReadingOptions& options,
   return time && time->index == 0 ? 1 : 0;
 }
 
+// Only names and units have letters beyond ASCII.
+std::string utf8_text(std::istream& stream, const std::string& file,
+                      std::vector<std::string>& remarks) {
+  std::string bytes = table_text(stream, file);
+  if (is_utf8(bytes)) {
+    return bytes;
+  }
+  const std::string encoding = likely_encoding(bytes);
+  const auto text = converted_to_utf8(bytes, encoding);
+  if (!text) {
+    throw core::InvalidInput{
+        fmt::format("{}: is not text in UTF-8 nor {} (save it as UTF-8)", file, encoding)};
+  }
+  remarks.push_back(
+      fmt::format("its text is not UTF-8: it was read as {}, which concerns names "
+                  "and units alone",
+                  encoding));
+  return *text;
+}
+
 }  // namespace
 
 Recording read_csv_recording(std::istream& text, const std::string& file,
                              const ReadingOptions& options) {
   std::vector<std::string> remarks;
-  const PlainTable plain = plain_table(whole_lines(table_text(text, file), remarks));
+  const PlainTable plain = plain_table(whole_lines(utf8_text(text, file, remarks), remarks));
   std::istringstream rows{plain.text};
   const Table table{read_csv(rows, file), file};
   if (table.rows() < min_samples) {

@@ -110,6 +110,37 @@ TEST_CASE("samples without times are as far apart as the header of LabVIEW's fil
   CHECK_THAT(why_not_si(given, Quantity::acceleration), Contains("--scale 9.80665"));
 }
 
+namespace {
+std::string as_utf16(const std::string& ascii) {
+  std::string text = "\xff\xfe";
+  for (const char c : ascii) {
+    text += {c, '\0'};
+  }
+  return text;
+}
+}  // namespace
+
+TEST_CASE("a table in Windows-1252 or UTF-16 is read with its units, and that is said",
+          "[analysis][recordings][formats]") {
+  const Recording windows = read_text(
+      "Messgr\xf6\xdf"
+      "e\r\n\r\nZeit (s)\tAcc (m/s\xb2)\n" +
+          with_decimal_commas(rows_of("\t", 1.0)),
+      {});
+  check_samples(windows);
+  CHECK(windows.channel == "Acc (m/s\u00b2)");
+  CHECK(why_not_si(windows, Quantity::acceleration).empty());
+  REQUIRE(windows.remarks.size() == 1);
+  CHECK_THAT(windows.remarks.front(), Contains("not UTF-8") && Contains("windows-1252"));
+  const Recording wide = read_text(as_utf16("time (s),acc (g)\n" + rows_of(",", 1.0)), {});
+  check_samples(wide);
+  CHECK_THAT(why_not_si(wide, Quantity::acceleration), Contains("--scale 9.80665"));
+  REQUIRE(wide.remarks.size() == 1);
+  CHECK_THAT(wide.remarks.front(), Contains("UTF-16"));
+  CHECK_THROWS_WITH(read_text("time,acc\x81\n" + rows_of(",", 1.0), {}),
+                    Contains("taps.csv: is not text in UTF-8 nor windows-1252"));
+}
+
 TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused with what helps",
           "[analysis][recordings][formats]") {
   std::string dates = "time,acc\n";

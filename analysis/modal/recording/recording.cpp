@@ -194,7 +194,8 @@ std::string utf8_text(std::istream& stream, const std::string& file,
 Recording read_csv_recording(std::istream& text, const std::string& file,
                              const ReadingOptions& options) {
   std::vector<std::string> remarks;
-  const PlainTable plain = plain_table(whole_lines(utf8_text(text, file, remarks), remarks));
+  const PlainTable plain =
+      plain_table(whole_lines(first_segment(utf8_text(text, file, remarks), remarks), remarks));
   std::istringstream rows{plain.text};
   const Table table{read_csv(rows, file), file};
   if (table.rows() < min_samples) {

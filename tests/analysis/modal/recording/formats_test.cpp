@@ -141,6 +141,38 @@ TEST_CASE("a table in Windows-1252 or UTF-16 is read with its units, and that is
                     Contains("taps.csv: is not text in UTF-8 nor windows-1252"));
 }
 
+TEST_CASE("of a LabVIEW file with a header for each segment the first is read, and that is said",
+          "[analysis][recordings][formats]") {
+  const bool has_comments = GENERATE(true, false);
+  const bool has_times = GENERATE(true, false);
+  const std::string name = has_comments ? "\tComment\n" : "\n";
+  const auto segment = [&](int gain) {
+    std::string text =
+        "Channels\t1\t\nY_Unit_Label\tg\t\nX0\t0\t\nDelta_X\t0.0005\t\n"
+        "***End_of_Header***\t\t\n";
+    text += (has_times ? "X_Value" : "") + std::string{"\tAcc"} + name;
+    for (int i = 0; i < count; ++i) {
+      text += fmt::format("{}\t{:.9g}\n", has_times ? fmt::format("{:.6g}", i / rate_hz) : "",
+                          gain * sample_at(i));
+    }
+    return text;
+  };
+  const std::string file = fmt::format(
+      "LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\t{}\n***End_of_Header***\t\n\t\n",
+      has_times ? "One" : "No");
+  const Recording one = read_text(file + segment(1), {});
+  check_samples(one);
+  CHECK(one.remarks.empty());
+  const Recording several =
+      read_text(file + segment(1) + "\t\n" + segment(2) + "\t\n" + segment(3), {});
+  check_samples(several);
+  CHECK(several.channel == one.channel);
+  CHECK(several.unit == "g");
+  REQUIRE(several.remarks.size() == 1);
+  CHECK_THAT(several.remarks.front(),
+             Contains("3 segments") && Contains("only the first") && Contains("line 91"));
+}
+
 TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused with what helps",
           "[analysis][recordings][formats]") {
   std::string dates = "time,acc\n";

@@ -191,6 +191,8 @@ TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused wit
   CHECK_THROWS_WITH(read_text(settings, given), Contains("oscilloscope"));
   CHECK_THROWS_WITH(read_text("t,acc\n" + rows_of(",", 1e6), {}),  // of no unit
                     Contains("taps.csv:2:") && Contains("500 s apart") && Contains("time_us"));
+  CHECK_THROWS_WITH(read_text("time,acc\n" + rows_of(",", 1e3), {}),  // likewise
+                    Contains("taps.csv:2:") && Contains("0.5 s apart") && Contains("time_ms"));
   given.column = "acc";
   const std::string gap = testing::replaced(
       "t,acc\n" + rows_of(",", 1.0), fmt::format("\n0.002,{:.9g}", sample_at(4)), "\n0.002,nan");

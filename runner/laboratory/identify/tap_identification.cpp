@@ -367,7 +367,10 @@ class Identifier {
   }
 
   ModelComparison compared_with_model() {
-    MeasuredModes measured{{}, measured_shapes()};
+    MeasuredModes measured{{}, measured_shapes(), result_.places_m, result_.band.low_hz};
+    if (result_.question.at_m) {
+      measured.places_m.push_back(*result_.question.at_m);
+    }
     for (const std::size_t i : result_.agreed) {
       measured.frequencies_hz.push_back(result_.modes[i].frequency_hz);
     }

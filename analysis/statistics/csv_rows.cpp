@@ -83,7 +83,9 @@ class CsvReader {
  private:
   void check_characters(std::string_view line) const {
     if (!utf8::is_valid(line.begin(), line.end())) {
-      throw core::InvalidInput{fmt::format("{}:{}: is not UTF-8 text", file_, line_)};
+      throw core::InvalidInput{fmt::format(
+          "{}:{}: is not UTF-8 text (save it as UTF-8, as spreadsheets do by 'CSV UTF-8')", file_,
+          line_)};
     }
     const auto is_control = [](unsigned char c) {
       return (c < ' ' && c != '\t' && c != '\r') || c == 0x7F;

@@ -152,12 +152,18 @@ bool selects_node(const Fixation& fixation, const Vec3& node_m, const Bounds& bo
   return false;
 }
 
-// Searches the corners of surface triangles only, not interior and mid-side nodes.
-int nearest_corner(const TetMesh& mesh, const Vec3& at_m) {
+// Of a solid, searches the corners of surface triangles only, not interior and mid-side nodes; a
+// sheet has nodes in its middle, too.
+Eigen::Index nearest_node(const TetMesh& mesh, const Solid& solid, const Vec3& at_m) {
+  const Eigen::ArrayXd squares_m2 =
+      (mesh.nodes_m.rowwise() - at_m.transpose()).rowwise().squaredNorm();
+  Eigen::Index nearest = 0;
+  if (solid.sheet()) {
+    squares_m2.minCoeff(&nearest);
+    return nearest;
+  }
   const auto corners = mesh.surface.leftCols<3>().reshaped();
-  return *std::ranges::min_element(corners, {}, [&](int node) {
-    return (mesh.nodes_m.row(node).transpose() - at_m).squaredNorm();
-  });
+  return *std::ranges::min_element(corners, {}, [&](int node) { return squares_m2[node]; });
 }
 
 std::vector<Eigen::Index> selected_nodes(const Fixation& fixation, const TetMesh& mesh,
@@ -165,8 +171,9 @@ std::vector<Eigen::Index> selected_nodes(const Fixation& fixation, const TetMesh
   const Bounds body = bounds(shape);
   const double snap_m = snap_of(shape);
   std::vector<Eigen::Index> nodes;
-  if (fixation.shape == RegionShape::vertex && std::holds_alternative<Solid>(shape)) {
-    const int nearest = nearest_corner(mesh, fixation.at_m);
+  const auto* const solid = std::get_if<Solid>(&shape);
+  if (fixation.shape == RegionShape::vertex && solid != nullptr) {
+    const Eigen::Index nearest = nearest_node(mesh, *solid, fixation.at_m);
     const double distance_m = (mesh.nodes_m.row(nearest).transpose() - fixation.at_m).norm();
     if (distance_m <= vertex_reach * body.size_m().norm()) {
       nodes.push_back(nearest);
@@ -227,6 +234,19 @@ std::string described(const Fixation& fixation) {
   }
   return {};
 }
+
+// Where a region round a point had to be; empty of others.
+std::string nearest_to(const Fixation& fixation, const TetMesh& mesh, const Shape& shape) {
+  const auto* const solid = std::get_if<Solid>(&shape);
+  const bool is_round_point =
+      fixation.shape == RegionShape::vertex || fixation.shape == RegionShape::ball;
+  if (solid == nullptr || !is_round_point) {
+    return {};
+  }
+  const auto node_m = mesh.nodes_m.row(nearest_node(mesh, *solid, fixation.at_m));
+  return fmt::format("; the nearest is ({:.4g}, {:.4g}, {:.4g}) m", node_m.x(), node_m.y(),
+                     node_m.z());
+}
 }  // namespace
 
 std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh,
@@ -236,9 +256,9 @@ std::vector<Eigen::Index> nodes_of(const Fixation& fixation, const TetMesh& mesh
     const Bounds body = bounds(shape);
     throw ModelError{fmt::format(
         "{}: the {} touches no node of the body (x from {:.4g} to {:.4g} m, y from {:.4g} "
-        "to {:.4g} m, z from {:.4g} to {:.4g} m)",
+        "to {:.4g} m, z from {:.4g} to {:.4g} m){}",
         whose, described(fixation), body.low_m.x(), body.high_m.x(), body.low_m.y(),
-        body.high_m.y(), body.low_m.z(), body.high_m.z())};
+        body.high_m.y(), body.low_m.z(), body.high_m.z(), nearest_to(fixation, mesh, shape))};
   }
   return nodes;
 }

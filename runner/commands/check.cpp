@@ -101,7 +101,7 @@ void print_models(const protocols::Protocol& protocol, ModelLibrary& models) {
           core::frequency_errors(*body, plate_spec(protocol, own).material, protocol.band_limit_hz);
       fmt::print("    {}\n", describe_errors(errors));
       fmt::print("{}", describe_spending(protocol, own, models));
-      warnings += note_of_folds(own) + note_of_relaxation(own, report) +
+      warnings += note_of_folds(own) + note_of_hinges(own) + note_of_relaxation(own, report) +
                   warning_of_order(own, report) + warning_of_errors(stimulus.name, errors);
     }
   }

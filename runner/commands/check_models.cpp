@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/smooth_normals.hpp"
@@ -382,6 +384,31 @@ std::string note_of_folds(const protocols::PresentedStimulus& stimulus) {
     }
   }
   return lines;
+}
+
+std::string note_of_hinges(const protocols::PresentedStimulus& stimulus) {
+  if (!stimulus.contacts) {
+    return {};
+  }
+  std::map<std::pair<std::size_t, std::size_t>, std::set<std::string>> regions;  // of two bodies
+  for (const core::JointSpring& spring : stimulus.contacts->springs) {
+    const auto [first, second] = std::minmax(spring.from.body, spring.to.body);
+    regions[{first, second}].insert(core::content_key(spring.from.region) +
+                                    core::content_key(spring.to.region));
+  }
+  std::string pairs;
+  for (const auto& [bodies, joined] : regions) {
+    if (joined.size() == 1) {
+      pairs += fmt::format("{}{} and {}", pairs.empty() ? "" : ", ", bodies.first, bodies.second);
+    }
+  }
+  return pairs.empty() ? ""
+                       : fmt::format(
+                             "  note: {} has bodies that are joined between one pair of regions "
+                             "alone ({}; 0 is the plate): springs join mean displacements, and so "
+                             "carry no moment (what is glued or welded there takes several small "
+                             "regions)\n",
+                             stimulus.name, pairs);
 }
 
 std::string describe_elements(const core::ModelReport& report) {

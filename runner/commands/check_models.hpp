@@ -49,6 +49,9 @@ std::string note_of_relaxation(const protocols::PresentedStimulus& stimulus,
 // A line for each sheet by its middle that is folded: along how many edges, as a curved one is,
 // too, whose triangles are wide.
 std::string note_of_folds(const protocols::PresentedStimulus& stimulus);
+// A line where two bodies are joined by springs between one pair of regions only, which turn freely
+// about each other there.
+std::string note_of_hinges(const protocols::PresentedStimulus& stimulus);
 // The edges at which the surface of the plate that is tapped, or of a body that it touches, from 1,
 // is folded; 0 where that is no sheet.
 std::size_t folds_of(const protocols::PresentedStimulus& stimulus, std::size_t body);

@@ -188,8 +188,9 @@ void print_table(const protocols::PresentedStimulus& stimulus, const core::Plate
   if (!is_beam) {
     print_completeness(report, spec.band_limit_hz);
     fmt::print("  {}\n", describe_errors(errors));
-    fmt::print("{}{}{}{}", note_of_folds(stimulus), note_of_relaxation(stimulus, report),
-               warning_of_order(stimulus, report), warning_of_errors(stimulus.name, errors));
+    fmt::print("{}{}{}{}{}", note_of_folds(stimulus), note_of_hinges(stimulus),
+               note_of_relaxation(stimulus, report), warning_of_order(stimulus, report),
+               warning_of_errors(stimulus.name, errors));
   }
 }
 

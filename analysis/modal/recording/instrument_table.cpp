@@ -276,7 +276,43 @@ bool is_plain(const std::vector<std::string_view>& lines, const FirstNumbers& fi
       headers == 0 ? first.cells : cells_of(lines[first.line - 1], first.separator).size();
   return first.separator != blank && headers <= 1 && above == first.cells;
 }
+// Where the blank lines before this line begin.
+std::size_t begin_of_blank_lines(std::string_view text, std::size_t line) {
+  while (line > 1) {
+    const std::size_t before = text.rfind('\n', line - 2) + 1;
+    if (!is_blank(text.substr(before, line - 1 - before))) {
+      break;
+    }
+    line = before;
+  }
+  return line;
+}
 }  // namespace
+
+std::string first_segment(std::string text, std::vector<std::string>& remarks) {
+  constexpr std::string_view end_of_header = "\n***End_of_Header***";
+  std::vector<std::size_t> headers;  // the file's own, then those of its segments
+  if (text.starts_with("LabVIEW Measurement")) {
+    for (std::size_t at = text.find(end_of_header); at != std::string::npos;
+         at = text.find(end_of_header, at + 1)) {
+      headers.push_back(at);
+    }
+  }
+  constexpr std::size_t of_one_segment = 2;
+  if (headers.size() <= of_one_segment) {
+    return text;
+  }
+  const std::size_t second = text.rfind("\nChannels", headers[of_one_segment]);
+  if (second == std::string::npos || second < headers[of_one_segment - 1]) {
+    return text;
+  }
+  text.resize(begin_of_blank_lines(text, second + 1));
+  remarks.push_back(fmt::format(
+      "it has {} segments with a header each, of which only the first was read, up to line {} "
+      "(save the others as files of their own)",
+      headers.size() - 1, std::ranges::count(text, '\n')));
+  return text;
+}
 
 PlainTable plain_table(const std::string& text) {
   const std::string timed = with_times_of_labview(text);

@@ -16,4 +16,8 @@ struct PlainTable {
 // its header (X0, Delta_X), unless its channels' differ. Rows of numbers: two successive lines of
 // as many cells, all of them numbers or, but for the first, empty. Anything else stays as it is.
 PlainTable plain_table(const std::string& text);
+
+// Of a LabVIEW file with a header for each segment (Multi_Headings Yes) what stands before the
+// second segment's, with a remark; any other text as it is.
+std::string first_segment(std::string text, std::vector<std::string>& remarks);
 }  // namespace tapstudy::analysis

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "analysis/modal/recording/instrument_table.hpp"
 #include "analysis/modal/recording/sampling.hpp"
 #include "analysis/statistics/csv_rows.hpp"
+#include "analysis/statistics/text_encoding.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
@@ -133,8 +135,40 @@ std::optional<double> rate_from_times(const Table& table, const TimeColumn& colu
                        remarks);
 }
 
+// Those that may hold measured values: times are left out, unless nothing else is there.
+std::vector<std::size_t> columns_of_values(const Table& table,
+                                           const std::optional<TimeColumn>& time) {
+  std::vector<std::size_t> others;
+  std::vector<std::size_t> values;
+  for (std::size_t i = 0; i < table.columns(); ++i) {
+    if (time && i == time->index) {
+      continue;
+    }
+    others.push_back(i);
+    if (!table.has_headers() || seconds_per_unit(table.headers()[i]) == 0.0) {
+      values.push_back(i);
+    }
+  }
+  return values.empty() ? others : values;
+}
+
+// "acc, force"; without headers "2 to 4".
+std::string names_of(const std::vector<std::size_t>& columns, const Table& table) {
+  if (columns.empty()) {
+    return "none";
+  }
+  if (!table.has_headers()) {
+    return fmt::format("{} to {}", columns.front() + 1, columns.back() + 1);
+  }
+  std::vector<std::string> names;
+  std::ranges::transform(columns, std::back_inserter(names),
+                         [&](std::size_t i) { return table.title(i); });
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 // The column with this header or, failing that, this number from 1.
-std::size_t named_column(const Table& table, const std::string& column) {
+std::size_t named_column(const Table& table, const std::string& column,
+                         const std::optional<TimeColumn>& time) {
   const auto found = std::ranges::find(table.headers(), column);
   if (found != table.headers().end()) {
     return static_cast<std::size_t>(found - table.headers().begin());
@@ -145,27 +179,45 @@ std::size_t named_column(const Table& table, const std::string& column) {
   }
   refuse(table.file(), 1,
          fmt::format("--column '{}' is none of its columns ({})", column,
-                     table.has_headers() ? fmt::format("{}", fmt::join(table.headers(), ", "))
-                                         : fmt::format("1 to {}", table.columns())));
+                     names_of(columns_of_values(table, time), table)));
 }
 
 std::size_t data_column(const Table& table, const ReadingOptions& options,
                         const std::optional<TimeColumn>& time) {
   if (!options.column.empty()) {
-    const std::size_t chosen = named_column(table, options.column);
+    const std::size_t chosen = named_column(table, options.column, time);
     if (time && chosen == time->index) {
       refuse(table.file(), 1, fmt::format("--column '{}' is the time", options.column));
     }
     return chosen;
   }
-  const std::size_t channels = table.columns() - (time ? 1 : 0);
-  if (channels != 1) {
+  const std::vector<std::size_t> channels = columns_of_values(table, time);
+  if (channels.size() != 1) {
     refuse(table.file(), 1,
-           fmt::format("has {} channels (choose one by --column: {})", channels,
-                       table.has_headers() ? fmt::format("{}", fmt::join(table.headers(), ", "))
-                                           : fmt::format("1 to {}", table.columns())));
+           fmt::format("has {} channels (choose one by --column: {})", channels.size(),
+                       names_of(channels, table)));
   }
-  return time && time->index == 0 ? 1 : 0;
+  return channels.front();
+}
+
+// Only names and units have letters beyond ASCII.
+std::string utf8_text(std::istream& stream, const std::string& file,
+                      std::vector<std::string>& remarks) {
+  std::string bytes = table_text(stream, file);
+  if (is_utf8(bytes)) {
+    return bytes;
+  }
+  const std::string encoding = likely_encoding(bytes);
+  const auto text = converted_to_utf8(bytes, encoding);
+  if (!text) {
+    throw core::InvalidInput{
+        fmt::format("{}: is not text in UTF-8 nor {} (save it as UTF-8)", file, encoding)};
+  }
+  remarks.push_back(
+      fmt::format("its text is not UTF-8: it was read as {}, which concerns names "
+                  "and units alone",
+                  encoding));
+  return *text;
 }
 
 }  // namespace
@@ -173,7 +225,8 @@ std::size_t data_column(const Table& table, const ReadingOptions& options,
 Recording read_csv_recording(std::istream& text, const std::string& file,
                              const ReadingOptions& options) {
   std::vector<std::string> remarks;
-  const PlainTable plain = plain_table(whole_lines(table_text(text, file), remarks));
+  const PlainTable plain =
+      plain_table(whole_lines(first_segment(utf8_text(text, file, remarks), remarks), remarks));
   std::istringstream rows{plain.text};
   const Table table{read_csv(rows, file), file};
   if (table.rows() < min_samples) {

@@ -125,7 +125,7 @@ std::optional<double> rate_of_times(const std::vector<double>& times, double sec
     refuse_times(place(times.size() - 1), "times must ascend", "", options, remarks);
     return std::nullopt;
   }
-  constexpr double longest_period_s = 1.0;
+  constexpr double longest_period_s = 0.1 * (1.0 - 1e-6);  // milliseconds at 10 kHz, rounded
   if (period * seconds_per_unit >= longest_period_s) {
     refuse_times(place(0), fmt::format("times are {:.4g} s apart", period * seconds_per_unit),
                  " (if they are no seconds, name them time_ms or time_us; if they are no times, "

@@ -18,8 +18,8 @@ inline constexpr double max_rate_difference = 0.001;
 
 // The rate of the even times nearest to these (least squares) [Hz]. place(i) begins the message
 // about one of them, "file:line" or "file". Unset, with a remark, for times that do not ascend, are
-// 1 s apart or more, or are further from a grid than max_jitter_periods, if a rate is given that is
-// to be trusted; otherwise throws InvalidInput for them.
+// 0.1 s apart or more, or are further from a grid than max_jitter_periods, if a rate is given that
+// is to be trusted; otherwise throws InvalidInput for them.
 std::optional<double> rate_of_times(const std::vector<double>& times, double seconds_per_unit,
                                     const ReadingOptions& options,
                                     const std::function<std::string(std::size_t)>& place,

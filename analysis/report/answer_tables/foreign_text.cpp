@@ -14,6 +14,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "analysis/statistics/text_encoding.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 namespace tapstudy::analysis {
@@ -25,15 +26,6 @@ using Text = std::unique_ptr<char, Free>;
 
 gssize size_of(const std::string& text) {
   return static_cast<gssize>(text.size());
-}
-
-// What a file that is no UTF-8 is most probably in.
-std::string likely_encoding(std::string_view bytes) {
-  const bool has_mark = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
-  if (has_mark) {
-    return "UTF-16";
-  }
-  return bytes.find('\0') == std::string_view::npos ? "windows-1252" : "UTF-16LE";
 }
 
 std::size_t begin_of(const std::string& text) {
@@ -60,29 +52,18 @@ std::string without_separator_line(std::string text) {
 std::string utf8_of(const std::string& bytes, const std::string& encoding,
                     const std::string& file) {
   if (encoding.empty()) {
-    if (bytes.find('\0') != std::string::npos ||
-        g_utf8_validate(bytes.data(), size_of(bytes), nullptr) == FALSE) {
+    if (bytes.find('\0') != std::string::npos || !is_utf8(bytes)) {
       throw core::InvalidInput{
           fmt::format("{}: is not UTF-8 text (--encoding says what it is in: probably {})", file,
                       likely_encoding(bytes))};
     }
     return without_separator_line(bytes);
   }
-  gsize size = 0;
-  GError* failure = nullptr;
-  const Text text{
-      g_convert(bytes.data(), size_of(bytes), "UTF-8", encoding.c_str(), nullptr, &size, &failure)};
+  const auto text = converted_to_utf8(bytes, encoding);
   if (!text) {
-    // opening a converter that there is not fails in more than one way
-    const bool is_known =
-        g_error_matches(failure, G_CONVERT_ERROR, G_CONVERT_ERROR_ILLEGAL_SEQUENCE) != FALSE ||
-        g_error_matches(failure, G_CONVERT_ERROR, G_CONVERT_ERROR_PARTIAL_INPUT) != FALSE;
-    g_error_free(failure);
-    throw core::InvalidInput{
-        is_known ? fmt::format("{}: is not text in {} (--encoding)", file, encoding)
-                 : fmt::format("--encoding: '{}' is not known (iconv --list names all)", encoding)};
+    throw core::InvalidInput{fmt::format("{}: is not text in {} (--encoding)", file, encoding)};
   }
-  return without_separator_line({text.get(), size});
+  return without_separator_line(*text);
 }
 
 std::vector<std::string> without_lines_of_programs(std::string& text) {

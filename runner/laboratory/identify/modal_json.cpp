@@ -137,6 +137,7 @@ Json json_of(const ModelComparison& model) {
             {"matched", Json::array()},
             {"unmatched", Json::array()},
             {"rival_pa", nullptr},
+            {"cautions", model.doubts},
             {"spring_factor", nullptr},
             {"mac", nullptr}};
   if (model.assurance.size() > 0) {

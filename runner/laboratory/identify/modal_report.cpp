@@ -163,6 +163,9 @@ void print_model(const ModalFindings& found, const ModelComparison& model) {
     fmt::print("  another assignment fits nearly as well, with {:.4g} Pa: which is right?\n",
                *update.rival_pa);
   }
+  for (const std::string& doubt : model.doubts) {
+    fmt::print("  caution: {}\n", doubt);
+  }
 }
 }  // namespace
 

@@ -214,8 +214,12 @@ std::string sinusoid_of(const SinusoidLaw& law, std::optional<double> loop_rate_
       law.frequency_hz.value, comment(law.frequency_hz));
 }
 
-std::string cautions_of(const analysis::ModelUpdate& update, std::size_t found) {
+std::string cautions_of(const ModelComparison& model, std::size_t found) {
+  const analysis::ModelUpdate& update = *model.update;
   std::string text;
+  for (const std::string& doubt : model.doubts) {
+    text += fmt::format("# CAUTION: {}\n", doubt);
+  }
   if (update.matched.size() < found) {
     text += fmt::format(
         "# CAUTION: only {} of the {} modes found match the model; Young's modulus rests on these. "
@@ -286,7 +290,7 @@ std::string yaml_of(const ModalFindings& found) {
     text += springs_of(*model.springs, model.shape);
   }
   if (model.update) {
-    text += cautions_of(*model.update, found.agreed.size());
+    text += cautions_of(model, found.agreed.size());
   }
   return text + fmt::format("materials:\n  {}:\n{}    density_kg_per_m3: {:.9g}\n{}",
                             model.material_name, elasticity_of(model),

@@ -1,11 +1,13 @@
 #include "runner/laboratory/identify/model_comparison.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <optional>
 
 #include "analysis/modal/modes/mode_shapes.hpp"
@@ -75,6 +77,15 @@ Eigen::RowVectorXd shape_at(const core::ModalModel& model, const TopPlace& place
   }
   return shape;
 }
+
+// Unset beside the body.
+std::optional<Eigen::RowVectorXd> shape_at(const core::ModalModel& model,
+                                           const core::TopHeight& top,
+                                           const Eigen::Vector2d& at_m) {
+  const auto z_m = top.at_m(at_m);
+  const TopPlace found = z_m ? top_place(model, at_m, *z_m) : TopPlace{};
+  return found.triangle < 0 ? std::nullopt : std::optional{shape_at(model, found)};
+}
 }  // namespace
 
 NumberedPlaces numbered(const std::vector<Eigen::Vector2d>& of_impacts_m) {
@@ -96,13 +107,12 @@ Eigen::MatrixXd assurance_of(const MeasuredShapes& measured, const core::ModalMo
                                model.frequency_hz.size());
   for (std::size_t place = 0; place < measured.places_m.size(); ++place) {
     const Eigen::Vector2d& at_m = measured.places_m[place];
-    const auto z_m = top.at_m(at_m);
-    const TopPlace found = z_m ? top_place(model, at_m, *z_m) : TopPlace{};
-    if (found.triangle < 0) {
+    const auto shape = shape_at(model, top, at_m);
+    if (!shape) {
       throw core::InvalidInput{
           fmt::format("--places: {:g}, {:g} m is not on the body", at_m.x(), at_m.y())};
     }
-    model_shapes.row(static_cast<Eigen::Index>(place)) = shape_at(model, found);
+    model_shapes.row(static_cast<Eigen::Index>(place)) = *shape;
   }
   Eigen::MatrixXd assurance(measured.shapes.cols(), model.frequency_hz.size());
   for (Eigen::Index i = 0; i < assurance.rows(); ++i) {
@@ -172,6 +182,93 @@ void update_on_springs(const core::PlateSpec& spec, const MeasuredModes& measure
   model.springs = IdentifiedSprings{
       found->spring_factor, {}, on_springs(spec, found->spring_factor.value).fixations};
 }
+// Modes of the model below the highest matched one that were sought, but that no measured mode is.
+std::vector<Eigen::Index> skipped_modes(const ModelComparison& model, double from_hz) {
+  const std::vector<analysis::MatchedMode>& matched = model.update->matched;
+  const std::size_t highest =
+      std::ranges::max_element(matched, {}, &analysis::MatchedMode::model)->model;
+  const double factor =
+      std::sqrt(model.update->youngs_modulus_pa.value / model.material->youngs_modulus_pa);
+  std::vector<Eigen::Index> skipped;
+  for (std::size_t mode = 0; mode < highest; ++mode) {
+    const bool is_matched =
+        std::ranges::find(matched, mode, &analysis::MatchedMode::model) != matched.end();
+    if (!is_matched && factor * model.frequencies_hz[mode] > from_hz) {
+      skipped.push_back(static_cast<Eigen::Index>(mode));
+    }
+  }
+  return skipped;
+}
+
+// Those of the modes that move some of the places along z by a share of the most that they move.
+std::vector<Eigen::Index> moving(const std::vector<Eigen::Index>& modes,
+                                 const core::ModalModel& modal, const core::Shape& body,
+                                 const std::vector<Eigen::Vector2d>& places_m) {
+  constexpr double least_share = 0.2;
+  const core::TopHeight top{body};
+  const Eigen::RowVectorXd most = modal.shape.cwiseAbs().colwise().maxCoeff();
+  std::vector<Eigen::Index> seen;
+  std::ranges::copy_if(modes, std::back_inserter(seen), [&](Eigen::Index mode) {
+    return std::ranges::any_of(places_m, [&](const Eigen::Vector2d& at_m) {
+      const auto shape = shape_at(modal, top, at_m);
+      return shape && std::abs((*shape)[mode]) > least_share * most[mode];
+    });
+  });
+  return seen;
+}
+
+std::string numbers_of(std::vector<Eigen::Index> modes) {
+  constexpr std::size_t most_named = 8;
+  const bool are_many = modes.size() > most_named;
+  modes.resize(std::min(modes.size(), most_named));
+  std::ranges::for_each(modes, [](Eigen::Index& mode) { ++mode; });
+  return fmt::format("{}{}", fmt::join(modes, ", "), are_many ? " ..." : "");
+}
+
+// Of a mode that is misfitted by far more than its interval and than models commonly are; empty:
+// there is none.
+std::string doubt_of_misfit(const ModelComparison& model, const MeasuredModes& measured,
+                            const std::vector<Eigen::Index>& skipped) {
+  constexpr double common_misfit = 0.02;
+  constexpr double far_beyond = 5.0;  // half-widths
+  double worst = common_misfit;
+  double half_widths = 0.0;
+  for (const analysis::MatchedMode& one : model.update->matched) {
+    const analysis::Estimate& hz = measured.frequencies_hz[one.measured];
+    const double half = 0.5 * (hz.interval.high - hz.interval.low) / hz.value;
+    if (std::abs(one.misfit) > std::max(worst, far_beyond * half)) {
+      worst = std::abs(one.misfit);
+      half_widths = worst / half;
+    }
+  }
+  if (half_widths == 0.0) {
+    return {};
+  }
+  return fmt::format(
+      "the model's frequencies are up to {:.1f} % from those measured, over {} times as far as "
+      "these are uncertain{}: are these the model's modes, and is the body as the protocol says?",
+      100.0 * worst, far_beyond,
+      skipped.empty() ? "" : ", and its modes " + numbers_of(skipped) + " are skipped");
+}
+
+std::vector<std::string> doubts_of(const ModelComparison& model, const core::ModalModel& modal,
+                                   const MeasuredModes& measured) {
+  const std::vector<Eigen::Index> skipped = skipped_modes(model, measured.from_hz);
+  std::vector<std::string> doubts;
+  if (const std::string doubt = doubt_of_misfit(model, measured, skipped); !doubt.empty()) {
+    doubts.push_back(doubt);
+  }
+  const auto unseen = model.springs ? std::vector<Eigen::Index>{}
+                                    // the shapes are of the stated springs
+                                    : moving(skipped, modal, model.shape, measured.places_m);
+  if (!unseen.empty()) {
+    doubts.push_back(
+        fmt::format("the model's modes {} lie below the highest that is matched and move what was "
+                    "tapped, but none was found for them: are the others the right ones?",
+                    numbers_of(unseen)));
+  }
+  return doubts;
+}
 }  // namespace
 
 ModelComparison compare_with_model(const protocols::Protocol& protocol, const std::string& stimulus,
@@ -210,6 +307,9 @@ ModelComparison compare_with_model(const protocols::Protocol& protocol, const st
       if (!model.springs) {  // f ~ sqrt(E) would take the springs to grow with E
         model.update.reset();
       }
+    }
+    if (model.update) {
+      model.doubts = doubts_of(model, modal, measured);
     }
   });
   if (model.springs) {

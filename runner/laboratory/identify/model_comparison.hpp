@@ -52,11 +52,14 @@ struct ModelComparison {
   bool is_on_springs{false};
   bool is_held_rigidly{false};               // at some fixation, and on no springs
   std::optional<IdentifiedSprings> springs;  // unset: rigid, or the modes do not tell
+  std::vector<std::string> doubts;           // sentences: why modes may be matched wrongly
 };
 
 struct MeasuredModes {
   std::vector<analysis::Estimate> frequencies_hz;
-  std::optional<MeasuredShapes> shapes;  // of the same modes; unset: not known
+  std::optional<MeasuredShapes> shapes;     // of the same modes; unset: not known
+  std::vector<Eigen::Vector2d> places_m{};  // that were tapped; empty: not known
+  double from_hz{0.0};                      // modes below were not sought
 };
 
 // Up to the protocol's band limit or high_hz. Throws ModelError if the model cannot be built,

@@ -249,8 +249,26 @@ class Identifier {
     // not by its mean: what stopped has been accelerated
     one.whole = between(recording, tap.onset, tap.end);
     one.whole.samples.array() -= state.at_rest.value;
+    remark_on_skipped(one);
     result_.taps.push_back(std::move(one));
     return true;
+  }
+
+  // What has died by the time the decay is taken from.
+  void remark_on_skipped(const IdentifiedTap& one) {
+    constexpr double most_of_it = 0.5;
+    const auto skipped = static_cast<Eigen::Index>(one.tap.begin - one.tap.onset);
+    const double share =
+        one.whole.samples.head(skipped).squaredNorm() / one.whole.samples.squaredNorm();
+    if (share > most_of_it) {
+      tap_remarks_.add(
+          one.file,
+          {one.time_s,
+           fmt::format("over {:.0f} % of its energy lies before the decay is taken, {:g} ms after "
+                       "its peak: modes that die so soon are not found (--skip, in s, takes less)",
+                       10.0 * std::floor(10.0 * share), 1e3 * result_.question.finding.skip_s),
+           {}});
+    }
   }
 
   void identify_modes() {
@@ -367,7 +385,10 @@ class Identifier {
   }
 
   ModelComparison compared_with_model() {
-    MeasuredModes measured{{}, measured_shapes()};
+    MeasuredModes measured{{}, measured_shapes(), result_.places_m, result_.band.low_hz};
+    if (result_.question.at_m) {
+      measured.places_m.push_back(*result_.question.at_m);
+    }
     for (const std::size_t i : result_.agreed) {
       measured.frequencies_hz.push_back(result_.modes[i].frequency_hz);
     }

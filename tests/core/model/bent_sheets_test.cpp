@@ -566,6 +566,44 @@ TEST_CASE("a sheet is held by all of a small ball or box, however wide its trian
   CHECK(first_hz(3) == Approx(first_hz(5)).epsilon(0.04));
 }
 
+// Southwell 1922, of a thin disc held at its centre: lambda² = 3.75, of Poisson's ratio 0.3.
+TEST_CASE("a disc of sheet is held at its centre by a vertex in its middle or on a face",
+          "[core][model][bent]") {
+  constexpr double radius_m = 0.1;
+  constexpr double thickness_m = 0.002;
+  const Vec3 at_m{0.0, 0.0, GENERATE(0.0, 0.001, -0.001)};
+  CAPTURE(at_m.z());
+  PlateSpec disc =
+      bent(without_points(grid(24, 6,
+                               [](double turn, double out) {
+                                 const double angle = 2.0 * std::numbers::pi * turn;
+                                 return Eigen::RowVector3d{radius_m * out * std::cos(angle),
+                                                           radius_m * out * std::sin(angle), 0.0};
+                               })),
+           thickness_m, 260.0);
+  Fixation centre;
+  centre.at_m = at_m;
+  disc.fixations = {centre};
+  const Eigen::ArrayXd found_hz = build_plate_model(disc).modal.frequency_hz;
+  const double rigidity_n_m = sheet_steel.youngs_modulus_pa * std::pow(thickness_m, 3) /
+                              (12.0 * (1.0 - std::pow(sheet_steel.poissons_ratio, 2)));
+  const double umbrella_hz =
+      3.75 / (2.0 * std::numbers::pi * radius_m * radius_m) *
+      std::sqrt(rigidity_n_m / (sheet_steel.density_kg_per_m3 * thickness_m));
+  CAPTURE(found_hz);
+  CHECK((found_hz / umbrella_hz - 1.0).abs().minCoeff() < 0.01);
+}
+
+TEST_CASE("a vertex that touches no node of a body is told which one is nearest",
+          "[core][model][bent]") {
+  PlateSpec sheet = bowl_on_ball(3, 0.006);
+  sheet.fixations[0].shape = RegionShape::vertex;
+  sheet.fixations[0].at_m = {0.0, 0.0, -0.07};
+  CHECK_THROWS_WITH(build_plate_model(sheet), Contains("touches no node of the body") &&
+                                                  Contains("the nearest is (") &&
+                                                  Contains(", -0.07925) m"));
+}
+
 TEST_CASE("a region of which a sheet's nodes span but a part is told", "[core][model][bent]") {
   PlateSpec sheet = bowl_on_ball(3, 0.006);
   Fixation& held = sheet.fixations[0];

@@ -42,6 +42,23 @@ TEST_CASE("check warns of plates that take more energy than the finger has",
   CHECK_THAT(testing::tapstudy({"check", file}).standard_output, !Contains("too light"));
 }
 
+TEST_CASE("bodies that are joined between one pair of regions are told to turn about each other",
+          "[runner][check]") {
+  core::JointSpring spring;
+  spring.to.body = 1;
+  protocols::Contacts contacts;
+  contacts.springs = {spring, spring};  // in one place, along x and y, say
+  protocols::PresentedStimulus stimulus;
+  stimulus.name = "halves";
+  CHECK(runner::note_of_hinges(stimulus).empty());
+  stimulus.contacts = std::make_shared<const protocols::Contacts>(contacts);
+  CHECK_THAT(runner::note_of_hinges(stimulus),
+             Contains("halves has bodies") && Contains("0 and 1") && Contains("no moment"));
+  contacts.springs[1].to.region.at_m.x() = 0.1;
+  stimulus.contacts = std::make_shared<const protocols::Contacts>(contacts);
+  CHECK(runner::note_of_hinges(stimulus).empty());
+}
+
 TEST_CASE("check warns of a plate that nothing holds", "[end_to_end][check]") {
   const testing::TempDirectory directory;
   const std::string file = directory / "study.yaml";

@@ -109,8 +109,10 @@ void compare(const protocols::Protocol& protocol, const core::ProgressHook& hook
   }
   if (!found.question.places.empty()) {
     measured.shapes = measured_shapes(found);
+    measured.places_m = measured.shapes ? measured.shapes->places_m : measured.places_m;
   }
   const Eigen::ArrayXd& hz = found.responses.measured.frequency_hz;
+  measured.from_hz = hz[0];
   found.model = compare_with_model(protocol, found.stimulus, measured, hz[hz.size() - 1], hook);
   for (const std::string& remark : remarks_on_springs(*found.model)) {
     found.remarks.push_back(remark);

@@ -27,7 +27,7 @@ std::string column_of(const std::string& separator, const std::string& end_of_ro
   std::string text;
   for (int i = 0; i < whole_count; ++i) {
     text += separator.empty() ? fmt::format("{}", whole_sample(i))
-                              : fmt::format("{}{}{}", 0.125 * i, separator, whole_sample(i));
+                              : fmt::format("{}{}{}", 0.0625 * i, separator, whole_sample(i));
     text += end_of_row;
   }
   return text;
@@ -38,7 +38,7 @@ std::string universal_text() {
       "    -1\n    58\nNONE\nNONE\nNONE\nNONE\nNONE\n"
       "         1         0    0         0 NONE               7   3 NONE               1   3\n"
       "         4{:>10}         1{:>13.5E}{:>13.5E}{:>13.5E}\n",
-      whole_count, 0.0, 0.125, 0.0);
+      whole_count, 0.0, 0.0625, 0.0);
   for (int i = 0; i < 4; ++i) {
     text += "        12    0    0    0 NONE                 NONE\n";
   }
@@ -69,7 +69,7 @@ std::string whole_sound() {
   for (int i = 0; i < whole_count; ++i) {
     data += bytes_of(static_cast<std::int16_t>(whole_sample(i)));
   }
-  return sound_of(8, data, 1, 16);
+  return sound_of(16, data, 1, 16);
 }
 
 // What SciPy and h5py write of the same samples and their rate.
@@ -84,7 +84,7 @@ std::string matlab_of(const testing::TempDirectory& directory, const std::string
 const std::string matlab_7_3 =
     "name_type = h5py.h5t.C_S1.copy()\nname_type.set_size(6)\n"
     "with h5py.File(file, 'w', userblock_size=512) as f:\n"
-    "  for name, value in (('acc', x.reshape(1, 90)), ('fs', np.full((1, 1), 8.0))):\n"
+    "  for name, value in (('acc', x.reshape(1, 90)), ('fs', np.full((1, 1), 16.0))):\n"
     "    a = h5py.h5a.create(f.create_dataset(name, data=value).id, b'MATLAB_class', name_type,\n"
     "                        h5py.h5s.create(h5py.h5s.SCALAR))\n"
     "    a.write(np.array(b'double', dtype='S6'), mtype=name_type)\n"
@@ -106,7 +106,7 @@ Told read_part(const testing::TempDirectory& directory, const std::string& name,
   const std::string file = directory / name;
   testing::write(file, bytes);
   ReadingOptions options;
-  options.rate_hz = 8.0;
+  options.rate_hz = 16.0;
   options.column = name == "blanks.txt" ? "2" : "";
   try {
     Recording recording = read_recording(file, options);
@@ -141,12 +141,12 @@ TEST_CASE("no number of a file that is cut anywhere is another than in the whole
   check_cuts(directory, {"blanks.txt", column_of("  ", "\n"), false});
   check_cuts(directory, {"text.uff", universal_text()});
   check_cuts(directory, {"taps.wav", whole_sound()});
-  const std::string both = "savemat(file, {'acc': x, 'fs': 8.0}, format=";
+  const std::string both = "savemat(file, {'acc': x, 'fs': 16.0}, format=";
   check_cuts(directory, {"plain.mat", matlab_of(directory, both + "'5')")});
   check_cuts(directory, {"packed.mat", matlab_of(directory, both + "'5', do_compression=True)")});
   check_cuts(directory, {"old.mat", matlab_of(directory, both + "'4')"), false});
   check_cuts(directory, {"new.mat", matlab_of(directory, matlab_7_3)});
-  const std::string hdf5 = "with h5py.File(file, 'w') as f:\n  f['acc'] = x; f['fs'] = 8.0";
+  const std::string hdf5 = "with h5py.File(file, 'w') as f:\n  f['acc'] = x; f['fs'] = 16.0";
   check_cuts(directory, {"taps.h5", matlab_of(directory, hdf5)});
 }
 

@@ -110,6 +110,69 @@ TEST_CASE("samples without times are as far apart as the header of LabVIEW's fil
   CHECK_THAT(why_not_si(given, Quantity::acceleration), Contains("--scale 9.80665"));
 }
 
+namespace {
+std::string as_utf16(const std::string& ascii) {
+  std::string text = "\xff\xfe";
+  for (const char c : ascii) {
+    text += {c, '\0'};
+  }
+  return text;
+}
+}  // namespace
+
+TEST_CASE("a table in Windows-1252 or UTF-16 is read with its units, and that is said",
+          "[analysis][recordings][formats]") {
+  const Recording windows = read_text(
+      "Messgr\xf6\xdf"
+      "e\r\n\r\nZeit (s)\tAcc (m/s\xb2)\n" +
+          with_decimal_commas(rows_of("\t", 1.0)),
+      {});
+  check_samples(windows);
+  CHECK(windows.channel == "Acc (m/s\u00b2)");
+  CHECK(why_not_si(windows, Quantity::acceleration).empty());
+  REQUIRE(windows.remarks.size() == 1);
+  CHECK_THAT(windows.remarks.front(), Contains("not UTF-8") && Contains("windows-1252"));
+  const Recording wide = read_text(as_utf16("time (s),acc (g)\n" + rows_of(",", 1.0)), {});
+  check_samples(wide);
+  CHECK_THAT(why_not_si(wide, Quantity::acceleration), Contains("--scale 9.80665"));
+  REQUIRE(wide.remarks.size() == 1);
+  CHECK_THAT(wide.remarks.front(), Contains("UTF-16"));
+  CHECK_THROWS_WITH(read_text("time,acc\x81\n" + rows_of(",", 1.0), {}),
+                    Contains("taps.csv: is not text in UTF-8 nor windows-1252"));
+}
+
+TEST_CASE("of a LabVIEW file with a header for each segment the first is read, and that is said",
+          "[analysis][recordings][formats]") {
+  const bool has_comments = GENERATE(true, false);
+  const bool has_times = GENERATE(true, false);
+  const std::string name = has_comments ? "\tComment\n" : "\n";
+  const auto segment = [&](int gain) {
+    std::string text =
+        "Channels\t1\t\nY_Unit_Label\tg\t\nX0\t0\t\nDelta_X\t0.0005\t\n"
+        "***End_of_Header***\t\t\n";
+    text += (has_times ? "X_Value" : "") + std::string{"\tAcc"} + name;
+    for (int i = 0; i < count; ++i) {
+      text += fmt::format("{}\t{:.9g}\n", has_times ? fmt::format("{:.6g}", i / rate_hz) : "",
+                          gain * sample_at(i));
+    }
+    return text;
+  };
+  const std::string file = fmt::format(
+      "LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\t{}\n***End_of_Header***\t\n\t\n",
+      has_times ? "One" : "No");
+  const Recording one = read_text(file + segment(1), {});
+  check_samples(one);
+  CHECK(one.remarks.empty());
+  const Recording several =
+      read_text(file + segment(1) + "\t\n" + segment(2) + "\t\n" + segment(3), {});
+  check_samples(several);
+  CHECK(several.channel == one.channel);
+  CHECK(several.unit == "g");
+  REQUIRE(several.remarks.size() == 1);
+  CHECK_THAT(several.remarks.front(),
+             Contains("3 segments") && Contains("only the first") && Contains("line 91"));
+}
+
 TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused with what helps",
           "[analysis][recordings][formats]") {
   std::string dates = "time,acc\n";
@@ -128,6 +191,8 @@ TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused wit
   CHECK_THROWS_WITH(read_text(settings, given), Contains("oscilloscope"));
   CHECK_THROWS_WITH(read_text("t,acc\n" + rows_of(",", 1e6), {}),  // of no unit
                     Contains("taps.csv:2:") && Contains("500 s apart") && Contains("time_us"));
+  CHECK_THROWS_WITH(read_text("time,acc\n" + rows_of(",", 1e3), {}),  // likewise
+                    Contains("taps.csv:2:") && Contains("0.5 s apart") && Contains("time_ms"));
   given.column = "acc";
   const std::string gap = testing::replaced(
       "t,acc\n" + rows_of(",", 1.0), fmt::format("\n0.002,{:.9g}", sample_at(4)), "\n0.002,nan");

@@ -62,7 +62,8 @@ TEST_CASE("a table is the same recording whatever its separator, header and unit
                read(table("Time (\u00b5s),acc,other", ',', 1e6, false), {2000.0, "acc"}),
                read(table("time [\u03bcs],acc,other", ',', 1e6, false), {2000.0, "acc"}),
                read(table("# a comment\n# another", ',', 1.0, false), {0.0, "2"}),
-               read(table("index,acc,other", ',', 1.0, false), {2000.0, "acc"}));
+               read(table("index,acc,other", ',', 1.0, false), {2000.0, "acc"}),
+               read(table("time,acc,timestamp_us", ',', 1.0, false), {}));
   CHECK(recording.rate_hz == Approx(2000.0));
   REQUIRE(recording.samples.size() == rows);
   for (int i = 0; i < rows; ++i) {
@@ -76,8 +77,10 @@ TEST_CASE("a table that cannot be a recording is refused where it cannot",
   const ReadingOptions acc{0.0, "acc"};
   using Case = std::tuple<std::string, ReadingOptions, std::string>;
   const auto [text, options, words] = GENERATE_COPY(values<Case>({
-      {good, {}, "taps.csv:1: has 2 channels"},
-      {good, {0.0, "force"}, "none of its columns (time, acc, other)"},
+      {good, {}, "taps.csv:1: has 2 channels (choose one by --column: acc, other)"},
+      {table("time,acc,Time (ms)", ',', 1.0, false), {0.0, "force"}, "none of its columns (acc)"},
+      {table("# none", ',', 1.0, false), {}, "has 2 channels (choose one by --column: 2 to 3)"},
+      {good, {0.0, "force"}, "none of its columns (acc, other)"},
       {good, {0.0, "time"}, "is the time"},
       {good, {1000.0, "acc"}, "its times say 2000 samples a second, --rate 1000"},
       {column_of_values(rows), {}, "no time column (give the rate by --rate HZ)"},

@@ -1,6 +1,7 @@
 #include "runner/laboratory/identify/tap_identification.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/random/rng.hpp"
+#include "protocols/reader/read_protocol.hpp"
 #include "runner/laboratory/identify/fits_over_taps.hpp"
 #include "runner/laboratory/identify/modal_report.hpp"
 #include "support/catch.hpp"
@@ -450,6 +452,82 @@ TEST_CASE("what was found of an orthotropic material is pasted as one, all modul
                        Contains("poissons_ratios: [0.37, 0.42, 0.47]") &&
                        Contains("axes_rotation_rad: [0, 0, 0.5]") &&
                        !Contains("youngs_modulus_pa"));
+}
+
+namespace {
+constexpr const char* free_beam = R"(format: tapstudy/1
+title: A free beam
+finger: {mass_kg: 0.0058, stiffness_n_per_m: 300, damping_n_s_per_m: 3}
+rendering: {rate_hz: 10000, penalty_stiffness_n_per_m: 3000, band_limit_hz: 2500}
+placement: {origin_m: [0, 0, 0], lateral_scale: 1}
+materials:
+  steel: {youngs_modulus_pa: 2.0e11, poissons_ratio: 0.3, density_kg_per_m3: 7800, damping: {ratio: 0.01}}
+plates:
+  beam: {size_m: [0.3, 0.02, 0.005], mesh: {order: 2, max_tet_volume_m3: 2.0e-6}, fixations: []}
+tapping_points_m: {end: [0.14, 0.0]}
+stimuli:
+  beam: {plate: beam, material: steel, technique: fem}
+)";
+runner::ModelComparison compared(const std::vector<double>& measured_hz,
+                                 const std::vector<Eigen::Vector2d>& places_m, double from_hz) {
+  const testing::TempDirectory directory;
+  testing::write(directory / "beam.yaml", free_beam);
+  runner::MeasuredModes measured{{}, {}, places_m, from_hz};
+  for (const double hz : measured_hz) {
+    measured.frequencies_hz.push_back({hz, 5e-4 * hz, {0.999 * hz, 1.001 * hz}, {}});
+  }
+  return runner::compare_with_model(protocols::read_protocol(directory / "beam.yaml"), "beam",
+                                    measured, 2400.0, {});
+}
+}  // namespace
+
+TEST_CASE("modes that are matched far beyond their intervals, or beside others, are doubted",
+          "[runner][identify]") {
+  const std::vector<double> model_hz = compared({}, {}, 0.0).frequencies_hz;
+  REQUIRE(model_hz.size() > 4);
+  const Eigen::Vector2d end_m{0.14, 0.0};
+  const std::vector<double> alike{1.1 * model_hz[0], 1.1 * model_hz[1], 1.1 * model_hz[2]};
+  CHECK(compared(alike, {end_m}, 0.0).doubts.empty());
+  // of a free beam bent about its other axis nothing is seen from above
+  const std::vector<double> others{0.97 * model_hz[1], 1.03 * model_hz[2]};
+  const auto misfitted = compared(others, {}, 0.0);
+  REQUIRE(misfitted.doubts.size() == 1);
+  CHECK_THAT(misfitted.doubts.front(), Contains("3.0 %") && Contains("its modes 1 are skipped"));
+  const std::vector<double> higher{model_hz[2], model_hz[3]};
+  CHECK(compared(higher, {}, 0.0).doubts.empty());
+  CHECK(compared(higher, {end_m}, 1.01 * model_hz[1]).doubts.empty());
+  runner::TapIdentification found;
+  found.modes.resize(2);
+  found.agreed = {0, 1};
+  found.model = compared(higher, {end_m}, 0.0);
+  REQUIRE(found.model->doubts.size() == 1);
+  CHECK_THAT(found.model->doubts.front(), Contains("modes 1") && Contains("what was tapped"));
+  CHECK_THAT(runner::yaml_of(found), Contains("# CAUTION: " + found.model->doubts.front() + "\n"));
+}
+
+TEST_CASE("a tap whose energy has mostly died before its decay is taken names --skip",
+          "[runner][identify]") {
+  const testing::TempDirectory directory;
+  const std::string file = directory / "taps.csv";
+  const double damping_ratio = GENERATE(0.01, 0.08);
+  // e^(-2 zeta omega t) of a mode's energy is left after t: 0.90 and 0.44 after 2 ms
+  const double left = std::exp(-2.0 * damping_ratio * 2.0 * std::numbers::pi * 410.0 * 0.002);
+  const analysis::Recording recording = testing::planted_recording(
+      {{{410.0, damping_ratio}}, {{120.0, 0.03}, 0.1}}, {0.4, 1.7, 3.0}, 3000.0, 4.3, 1e-3, 5);
+  std::string text = "acc\n";
+  for (const double sample : recording.samples) {
+    text += fmt::format("{:.7g}\n", sample);
+  }
+  testing::write(file, text);
+  runner::TapQuestion question;
+  question.recordings = {file};
+  question.reading.rate_hz = 3000.0;
+  question.band = analysis::Band{20.0, 600.0};
+  runner::Progress progress{"identifying"};
+  const std::string remarks =
+      fmt::format("{}", fmt::join(runner::identify_taps(question, progress).remarks, "\n"));
+  CAPTURE(remarks, left);
+  CHECK((remarks.find("--skip") != std::string::npos) == (left < 0.5));
 }
 
 TEST_CASE("what was noticed about the taps stands in what is pasted, as comments",

@@ -256,9 +256,8 @@ struct BlockOrder {
 // Of participants, each of whom is in one: a group does these blocks, and no others.
 struct Group {
   std::string name;
-  std::string label;                     // what reports call it
-  std::vector<std::string> blocks;       // in the file's order
-  std::vector<std::string> own_order{};  // the same as the group does them; empty: block_order
+  std::string label;                // what reports call it
+  std::vector<std::string> blocks;  // in the file's order
 };
 
 // One of the times that a participant comes, on another day, say.

@@ -25,50 +25,6 @@ std::vector<std::string> in_file_order(const std::vector<Block>& all,
   return ordered;
 }
 
-// As they are named.
-std::vector<std::string> in_order_named(const std::vector<Block>& all,
-                                        const std::vector<std::string>& named) {
-  std::vector<std::string> ordered;
-  for (const std::string& name : named) {
-    std::ranges::copy(in_file_order(all, {name}), std::back_inserter(ordered));
-  }
-  return ordered;
-}
-
-// What is mixed is one thing after which the next one comes.
-bool are_mixed_ones_together(const Protocol& protocol, const std::vector<std::string>& order) {
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (std::size_t k = i + 2; k < order.size(); ++k) {
-      const Block& one = protocol.block(order[i]);
-      if (protocol.are_mixed(one, protocol.block(order[k])) &&
-          !protocol.are_mixed(one, protocol.block(order[k - 1]))) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-void read_own_order(MapReader& reader, const Protocol& protocol,
-                    const std::vector<std::string>& named, Group& group) {
-  const bool is_own = reader.one_of<bool>(
-      {"block_order",
-       "as_named: the group does its blocks in the order in which they are named here, whatever "
-       "the protocol's block_order does with those of other groups"},
-      {{"as_named", true}, {"as_protocol", false}}, "as_protocol");
-  if (!is_own) {
-    return;
-  }
-  if (!reader.has("blocks")) {
-    reader.reject("block_order", "is as_named, and 'blocks' names none");
-    return;
-  }
-  group.own_order = in_order_named(protocol.blocks, named);
-  if (!are_mixed_ones_together(protocol, group.own_order)) {
-    reader.reject("blocks", "name another block between two that are mixed with each other");
-  }
-}
-
 Group read_group(MapReader& reader, const Protocol& protocol) {
   std::vector<std::string> all;
   std::ranges::transform(protocol.blocks, std::back_inserter(all), &Block::name);
@@ -83,13 +39,12 @@ Group read_group(MapReader& reader, const Protocol& protocol) {
   group.name = reader.name({"name", "unique among the groups"});
   const std::string label = reader.text({"label", "what reports call it; unset: its name"}, "");
   group.label = label.empty() ? group.name : label;
-  const std::vector<std::string> named =
+  group.blocks = in_file_order(
+      protocol.blocks,
       reader.words({"blocks",
                     "names of blocks: the group does these, in file order unless block_order "
                     "says otherwise; unset: all"},
-                   "block", names, all);
-  group.blocks = in_file_order(protocol.blocks, named);
-  read_own_order(reader, protocol, named, group);
+                   "block", names, all));
   const bool counts = std::ranges::any_of(protocol.blocks, [&](const Block& block) {
     return !block.is_practice && does(&group, block);
   });

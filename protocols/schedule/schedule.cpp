@@ -73,26 +73,7 @@ bool moves(const Protocol& protocol, const Unit& unit) {
   return may_move(protocol, protocol.leader(protocol.blocks[unit.back()]));
 }
 
-bool has_own_order(const Group* group) {
-  return group != nullptr && !group->own_order.empty();
-}
-
-// The part's blocks, each alone, as the group does them.
-std::vector<Unit> in_own_order(const Protocol& protocol, const Part& part) {
-  std::vector<Unit> units;
-  for (const std::string& name : part.group->own_order) {
-    const auto block = std::ranges::find(protocol.blocks, name, &Block::name);
-    if (block->session == part.session) {
-      units.push_back({static_cast<std::size_t>(block - protocol.blocks.begin())});
-    }
-  }
-  return units;
-}
-
 std::vector<Unit> units_of(const Protocol& protocol, const Part& part) {
-  if (has_own_order(part.group)) {
-    return in_own_order(protocol, part);
-  }
   std::vector<Unit> units = with_practice_before(protocol, part);
   const auto is_practice = [&](std::size_t block) { return protocol.blocks[block].is_practice; };
   const bool has_each_its_own = std::ranges::all_of(
@@ -111,10 +92,9 @@ std::vector<Unit> units_of(const Protocol& protocol, const Part& part) {
 }
 
 // Those that exchange their places.
-std::vector<std::size_t> moving(const Protocol& protocol, const Group* group,
-                                const std::vector<Unit>& units) {
+std::vector<std::size_t> moving(const Protocol& protocol, const std::vector<Unit>& units) {
   std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < units.size() && !has_own_order(group); ++i) {
+  for (std::size_t i = 0; i < units.size(); ++i) {
     if (moves(protocol, units[i])) {
       found.push_back(i);
     }
@@ -160,7 +140,7 @@ std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t 
     std::ranges::transform(units, std::back_inserter(ordered),
                            [](const Unit& unit) { return &unit; });
     if (protocol.block_order.order != Order::listed) {
-      const std::vector<std::size_t> places = moving(protocol, part.group, units);
+      const std::vector<std::size_t> places = moving(protocol, units);
       std::vector<std::size_t> drawn = places;
       reorder(protocol, whose, session, drawn);
       for (std::size_t i = 0; i < places.size(); ++i) {
@@ -178,7 +158,7 @@ std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t 
 int balanced_block_orders(const Protocol& protocol, const Group* group) {
   int orders = 1;
   for (const Part& part : parts_of(protocol, group)) {
-    const std::size_t places = moving(protocol, group, units_of(protocol, part)).size();
+    const std::size_t places = moving(protocol, units_of(protocol, part)).size();
     if (protocol.block_order.order == Order::williams && places > 1) {
       orders = std::lcm(orders, williams_rows(static_cast<int>(places)));
     }

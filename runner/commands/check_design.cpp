@@ -262,16 +262,9 @@ std::string described_order(const BlockOrderDealt& order, const protocols::Proto
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-bool have_different_orders(const protocols::Protocol& protocol) {
-  return protocol.block_order.order != protocols::Order::listed ||
-         std::ranges::any_of(protocol.groups, [](const protocols::Group& group) {
-           return !group.own_order.empty();
-         });
-}
-
 // Who practises after counted trials learnt in trials that count.
 void print_orders_of_practice(const protocols::Protocol& protocol) {
-  if (!have_different_orders(protocol) ||
+  if (protocol.block_order.order == protocols::Order::listed ||
       std::ranges::none_of(protocol.blocks, &protocols::Block::is_practice)) {
     return;
   }
@@ -312,7 +305,7 @@ void warn_of_block_order(const protocols::Protocol& protocol, int participants) 
           orders);
     }
   }
-  if (have_different_orders(protocol)) {
+  if (protocol.block_order.order != protocols::Order::listed) {
     return;
   }
   // blocks exchange their places within a session, of those who do both

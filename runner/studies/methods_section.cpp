@@ -175,18 +175,6 @@ bool have_own_blocks(const std::vector<GroupMembers>& groups, const Protocol& pr
   });
 }
 
-// "Group 'x' did them in the order 'b', 'a'. " of each that has an order of its own.
-std::string describe_own_orders(const std::vector<GroupMembers>& groups) {
-  std::string text;
-  for (const GroupMembers& members : groups) {
-    if (members.group != nullptr && !members.group->own_order.empty()) {
-      text += fmt::format("Group '{}' did them in the order '{}'. ", members.group->label,
-                          fmt::join(members.group->own_order, "', '"));
-    }
-  }
-  return text;
-}
-
 // "Each participant did 'a' (…), then 'b' (…). ", or how the blocks followed one another.
 // blocks: their descriptions.
 CitingText describe_sequence(const Protocol& protocol, const std::string& who,
@@ -197,9 +185,8 @@ CitingText describe_sequence(const Protocol& protocol, const std::string& who,
                               ? citing("Each group did its own of these blocks, in this order: {}",
                                        core::joined(blocks, "; "))
                               : citing("{} did {}", who, core::joined(blocks, ", then "));
-  const std::string own = describe_own_orders(groups);
   if (order.order == protocols::Order::listed) {
-    return citing("{}. {}", done, own);
+    return citing("{}. ", done);
   }
   const auto order_of = [&](int order_index) {
     return protocols::block_sequence(protocol, 0, order_index);
@@ -209,11 +196,10 @@ CitingText describe_sequence(const Protocol& protocol, const std::string& who,
     return dealt_orders(protocols::balanced_block_orders(protocol, members.group), members,
                         order_of);
   });
-  return citing("{}, where '{}' exchanged their places among participants{}. {}", done,
+  return citing("{}, where '{}' exchanged their places among participants{}. ", done,
                 fmt::join(order.blocks, "', '"),
                 order.order == protocols::Order::shuffle ? CitingText{", in random order"}
-                                                         : describe_williams_orders(dealt),
-                own);
+                                                         : describe_williams_orders(dealt));
 }
 
 std::string apparatus(const std::vector<results::SessionRow>& sessions) {

@@ -119,27 +119,6 @@ TEST_CASE("orders of blocks and of stimuli are balanced within each group", "[pr
   }
 }
 
-TEST_CASE(
-    "a group with an order of its own does its blocks as it names them, others as the protocol "
-    "says",
-    "[protocols][groups]") {
-  const protocols::Protocol protocol = testing::with_blocks(
-      blocks,
-      "groups:\n"
-      "  - {name: reversed, blocks: [practice, c, test, a], block_order: as_named}\n"
-      "  - {name: balanced, blocks: [practice, a, b, test]}\n"
-      "block_order: {order: williams, blocks: [a, b, c]}\n");
-  CHECK(protocols::balanced_block_orders(protocol, &protocol.group("reversed")) == 1);
-  CHECK(protocols::balanced_block_orders(protocol, &protocol.group("balanced")) == 2);
-  std::map<std::string, std::set<Names>> orders;
-  for (int i = 0; i < 12; ++i) {
-    orders[protocols::group_of(protocol, i)->name].insert(blocks_in(make_schedule(protocol, 1, i)));
-  }
-  CHECK(orders["reversed"] == std::set<Names>{{"practice", "c", "test", "a"}});
-  CHECK(orders["balanced"] ==
-        std::set<Names>{{"practice", "a", "b", "test"}, {"practice", "b", "a", "test"}});
-}
-
 TEST_CASE("without groups every participant does every block, in orders by the order index",
           "[protocols][groups]") {
   const protocols::Protocol protocol = testing::with_blocks(blocks, "");
@@ -182,8 +161,6 @@ TEST_CASE("groups that cannot be are refused at their place, with what is allowe
   refused(other + "  - {name: y, blocks: [a]}\n", "2", "'y' is the name of an earlier group");
   refused("  - {name: x}\n", "1", "must be two or more");
   refused("  []\n", "1", "must be two or more");
-  refused("  - {name: x, block_order: as_named}\n" + other, "1", "'blocks' names none");
-  refused("  - {name: x, blocks: [b, a], block_order: as_is}\n" + other, "1", "as_named");
   refused("  - {name: x y}\n" + other, "1", "name");
   refused("  - {blocks: [a]}\n" + other, "1", "name");
 }

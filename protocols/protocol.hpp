@@ -258,6 +258,10 @@ struct Group {
   std::string name;
   std::string label;                // what reports call it
   std::vector<std::string> blocks;  // in the file's order
+  // Those that change places with one another, in the group's order; empty: as in block_order.
+  std::vector<std::string> block_order{};
+  // Of a block's stimuli those that the group is presented, in this order; unset: all of them.
+  std::map<std::string, std::vector<std::string>> stimuli{};
 };
 
 // One of the times that a participant comes, on another day, say.

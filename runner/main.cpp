@@ -11,6 +11,7 @@
 
 #include "core/algebra/blas.hpp"
 #include "core/error.hpp"
+#include "core/files/output_files.hpp"
 #include "core/process/bounded_child.hpp"
 #include "device/device.hpp"
 #include "results/store_error.hpp"
@@ -27,7 +28,8 @@ ExitCode code_of(const std::exception& error) {
   if (dynamic_cast<const tapstudy::device::DeviceError*>(&error) != nullptr) {
     return ExitCode::device_failed;
   }
-  if (dynamic_cast<const tapstudy::results::StoreError*>(&error) != nullptr) {
+  if (dynamic_cast<const tapstudy::results::StoreError*>(&error) != nullptr ||
+      dynamic_cast<const tapstudy::core::WritingFailed*>(&error) != nullptr) {
     return ExitCode::store_failed;
   }
   if (dynamic_cast<const tapstudy::runner::Stopped*>(&error) != nullptr) {

@@ -38,6 +38,13 @@ bool write_all(int descriptor, std::string_view bytes) {
 namespace {
 namespace fs = std::filesystem;
 
+[[noreturn]] void refuse(const std::string& file, const std::string& what, std::error_code error) {
+  if (error == std::errc::no_space_on_device || error.value() == EDQUOT) {
+    throw WritingFailed{file};
+  }
+  throw InvalidInput{fmt::format("{}: {}: {}", file, what, error.message())};
+}
+
 // A file that did not exist before, and will not again unless it is kept.
 class CreatedFile {
  public:
@@ -45,8 +52,7 @@ class CreatedFile {
       : name_{file},
         descriptor_{open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)} {
     if (descriptor_ < 0) {
-      throw InvalidInput{
-          fmt::format("{}: cannot be written: {}", file, std::generic_category().message(errno))};
+      refuse(file, "cannot be written", {errno, std::generic_category()});
     }
   }
   ~CreatedFile() {
@@ -73,7 +79,7 @@ class CreatedFile {
  private:
   void check(bool is_written) const {
     if (!is_written) {
-      throw InvalidInput{name_ + ": writing failed (is the disk full?)"};
+      throw WritingFailed{name_};
     }
   }
 
@@ -127,7 +133,7 @@ class CreatedDirectories {
     for (const fs::path& at : missing) {
       fs::create_directory(at, error);
       if (error) {
-        throw InvalidInput{at.string() + ": cannot be made a directory: " + error.message()};
+        refuse(at.string(), "cannot be made a directory", error);
       }
       made_.push_back(at);
     }
@@ -146,7 +152,7 @@ void finish(const std::string& file) {
   std::error_code error;
   fs::rename(unfinished(file), file, error);
   if (error) {
-    throw InvalidInput{file + ": cannot be replaced: " + error.message()};
+    refuse(file, "cannot be replaced", error);
   }
 }
 }  // namespace
@@ -263,7 +269,7 @@ class Unfinished {
       is_made = fs::create_directory(name_, error);
     }
     if (error) {
-      throw InvalidInput{final_name + ": cannot be made: " + error.message()};
+      refuse(final_name, "cannot be made", error);
     }
     lock_.emplace(name_);
   }
@@ -287,7 +293,7 @@ void rename_to_new(const std::string& from, const std::string& to) {
   std::error_code error;
   fs::rename(from, to, error);
   if (error) {
-    throw InvalidInput{to + ": cannot be made: " + error.message()};
+    refuse(to, "cannot be made", error);
   }
 }
 }  // namespace
@@ -296,7 +302,7 @@ void make_directories(const std::string& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) {
-    throw InvalidInput{fmt::format("{}: cannot be made: {}", directory, error.message())};
+    refuse(directory, "cannot be made", error);
   }
   if (!fs::is_directory(directory, error) || access(directory.c_str(), W_OK | X_OK) != 0) {
     throw InvalidInput{directory + ": is not a writable directory"};

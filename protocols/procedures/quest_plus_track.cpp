@@ -198,4 +198,18 @@ std::vector<std::pair<double, double>> QuestPlusSettings::ranges() const {
   }
   return ranges;
 }
+
+bool is_at_end_of_grid(const ParameterPosterior& posterior, const TrackSettings& settings) {
+  const auto* const quest = dynamic_cast<const QuestPlusSettings*>(&settings);
+  if (quest == nullptr || posterior.name == "guess" || posterior.name == "lapse") {
+    return false;
+  }
+  const std::vector<ParameterGrid>& parameters = quest->table().design().parameters;
+  const auto own = std::ranges::find(parameters, posterior.name, &ParameterGrid::name);
+  if (own == parameters.end() || own->values.size() < 2) {
+    return false;
+  }
+  const auto [low, high] = std::ranges::minmax(own->values);
+  return posterior.mode <= low || posterior.mode >= high;
+}
 }  // namespace tapstudy::protocols

@@ -80,4 +80,9 @@ class QuestPlusSettings final : public TrackSettings {
   QuestPlusStop stop_;
   Method method_;
 };
+
+// Whether the mode lies at the first or the last of several values of the parameter's grid: beyond
+// it the posterior is cut off. False of other procedures than QUEST+ and psi, and of rates of
+// guesses and lapses, which end at 0 by themselves.
+bool is_at_end_of_grid(const ParameterPosterior& posterior, const TrackSettings& settings);
 }  // namespace tapstudy::protocols

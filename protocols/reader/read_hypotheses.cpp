@@ -139,6 +139,35 @@ void read_groups_compared(MapReader& reader, const Protocol& protocol, const Blo
   reader.check_count("groups", hypothesis.groups, 2, 2, "two groups are compared");
 }
 
+// Shares of right answers are compared where the same answers are right, equally often; stimuli
+// within participants, who have all of them.
+void check_own_stimuli(MapReader& reader, const Protocol& protocol, const Hypothesis& hypothesis,
+                       const Block& block) {
+  const bool is_of_stimuli = hypothesis.claim == Claim::interaction || !hypothesis.stimulus.empty();
+  for (const Group& group : protocol.groups) {
+    if (is_of_stimuli && block_of(&group, block).stimuli.size() < block.stimuli.size()) {
+      reader.reject("block",
+                    fmt::format("group '{}' is not presented all of its stimuli, which are "
+                                "compared within participants",
+                                group.name));
+      return;
+    }
+  }
+  if (hypothesis.groups.size() != 2) {
+    return;
+  }
+  const auto of = [&](const std::string& name) {
+    return right_answers(block_of(&protocol.group(name), block));
+  };
+  if (of(hypothesis.groups[0]) != of(hypothesis.groups[1])) {
+    reader.reject("groups",
+                  fmt::format("'{}' and '{}' are presented stimuli of this block with other right "
+                              "answers: their shares of right answers cannot be compared (allowed: "
+                              "stimuli of which the same answers are right, equally often)",
+                              hypothesis.groups[0], hypothesis.groups[1]));
+  }
+}
+
 // What `within` bounds: a difference of means, or a ratio where values are compared by ratios.
 struct BoundedValue {
   std::string name;
@@ -316,6 +345,7 @@ void read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
     reader.reject("block", "is practice, which no report tests");
   } else if (block != nullptr) {
     check_fits_task(reader, protocol, hypothesis, *block);
+    check_own_stimuli(reader, protocol, hypothesis, *block);
   }
   protocol.hypotheses.push_back(std::move(hypothesis));
 }

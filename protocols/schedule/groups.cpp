@@ -5,15 +5,17 @@
 
 #include "protocols/schedule/ordering.hpp"
 namespace tapstudy::protocols {
+std::size_t place_of_group(std::uint64_t counterbalancing_seed, std::size_t groups,
+                           int order_index) {
+  const std::uint64_t seed = core::derived_seed(counterbalancing_seed, core::Purpose::groups);
+  return static_cast<std::size_t>(balanced_sequence(static_cast<int>(groups), {order_index, seed}));
+}
+
 const Group* group_of(const Protocol& protocol, int order_index) {
-  if (protocol.groups.empty()) {
-    return nullptr;
-  }
-  const std::uint64_t seed =
-      core::derived_seed(protocol.counterbalancing_seed, core::Purpose::groups);
-  const int group =
-      balanced_sequence(static_cast<int>(protocol.groups.size()), {order_index, seed});
-  return &protocol.groups[static_cast<std::size_t>(group)];
+  return protocol.groups.empty()
+             ? nullptr
+             : &protocol.groups[place_of_group(protocol.counterbalancing_seed,
+                                               protocol.groups.size(), order_index)];
 }
 
 int index_in_group(const Protocol& protocol, int order_index) {
@@ -26,6 +28,23 @@ int index_in_group(std::size_t groups, int order_index) {
 
 bool does(const Group* group, const Block& block) {
   return group == nullptr || std::ranges::find(group->blocks, block.name) != group->blocks.end();
+}
+
+Block block_of(const Group* group, const Block& block) {
+  Block own = block;
+  if (group != nullptr && group->stimuli.contains(block.name)) {
+    own.stimuli = group->stimuli.at(block.name);
+  }
+  return own;
+}
+
+std::map<std::string, int> right_answers(const Block& block) {
+  std::map<std::string, int> counts;
+  for (const std::string& stimulus : block.stimuli) {
+    const auto right = block.right_response.find(stimulus);
+    ++counts[right == block.right_response.end() ? stimulus : right->second];
+  }
+  return counts;
 }
 
 int members(const Protocol& protocol, const Group* group, int participants) {

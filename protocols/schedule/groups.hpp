@@ -1,5 +1,8 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "protocols/protocol.hpp"
@@ -8,6 +11,9 @@ namespace tapstudy::protocols {
 // from 0 on, every group has one, in an order that the study's counterbalancing seed draws for the
 // run. The group of an index therefore depends on nothing that happens during the study.
 
+// Of so many groups, the place of the one that this order index is of.
+std::size_t place_of_group(std::uint64_t counterbalancing_seed, std::size_t groups,
+                           int order_index);
 // nullptr: the protocol has no groups.
 const Group* group_of(const Protocol& protocol, int order_index);
 
@@ -18,6 +24,13 @@ int index_in_group(std::size_t groups, int order_index);
 
 // Whether the group does the block; nullptr does all.
 bool does(const Group* group, const Block& block);
+
+// The block as it is presented to the group: with the group's stimuli. Answers, and which of them
+// are right, are those of the whole block.
+Block block_of(const Group* group, const Block& block);
+
+// How often each answer is right, of its stimuli presented once.
+std::map<std::string, int> right_answers(const Block& block);
 
 // How many of the first so many participants are in the group (nullptr: all), or do the block.
 int members(const Protocol& protocol, const Group* group, int participants);

@@ -18,8 +18,13 @@ namespace {
 // alone.
 using Unit = std::vector<std::size_t>;
 
-bool may_move(const Protocol& protocol, const Block& block) {
-  const std::vector<std::string>& named = protocol.block_order.blocks;
+bool has_own_order(const Group* group) {
+  return group != nullptr && !group->block_order.empty();
+}
+
+bool may_move(const Protocol& protocol, const Group* group, const Block& block) {
+  const std::vector<std::string>& named =
+      has_own_order(group) ? group->block_order : protocol.block_order.blocks;
   return !block.is_practice && !block.is_fixed &&
          (named.empty() || std::ranges::find(named, block.name) != named.end());
 }
@@ -69,15 +74,16 @@ std::vector<Unit> with_practice_before(const Protocol& protocol, const Part& par
 }
 
 // The last block of those that stay together, or the one it is mixed with, says whether they move.
-bool moves(const Protocol& protocol, const Unit& unit) {
-  return may_move(protocol, protocol.leader(protocol.blocks[unit.back()]));
+bool moves(const Protocol& protocol, const Group* group, const Unit& unit) {
+  return may_move(protocol, group, protocol.leader(protocol.blocks[unit.back()]));
 }
 
 std::vector<Unit> units_of(const Protocol& protocol, const Part& part) {
   std::vector<Unit> units = with_practice_before(protocol, part);
   const auto is_practice = [&](std::size_t block) { return protocol.blocks[block].is_practice; };
-  const bool has_each_its_own = std::ranges::all_of(
-      units, [&](const Unit& unit) { return !moves(protocol, unit) || is_practice(unit.front()); });
+  const bool has_each_its_own = std::ranges::all_of(units, [&](const Unit& unit) {
+    return !moves(protocol, part.group, unit) || is_practice(unit.front());
+  });
   if (units.empty() || has_each_its_own) {
     return units;
   }
@@ -92,10 +98,11 @@ std::vector<Unit> units_of(const Protocol& protocol, const Part& part) {
 }
 
 // Those that exchange their places.
-std::vector<std::size_t> moving(const Protocol& protocol, const std::vector<Unit>& units) {
+std::vector<std::size_t> moving(const Protocol& protocol, const Group* group,
+                                const std::vector<Unit>& units) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < units.size(); ++i) {
-    if (moves(protocol, units[i])) {
+    if (moves(protocol, group, units[i])) {
       found.push_back(i);
     }
   }
@@ -116,7 +123,7 @@ void reorder(const Protocol& protocol, const Whose& whose, std::uint64_t session
     return;
   }
   const int n = static_cast<int>(places.size());
-  if (n < 2) {
+  if (protocol.block_order.order == Order::listed || n < 2) {
     return;  // a group may do one alone of those that move
   }
   const std::uint64_t seed =
@@ -126,6 +133,15 @@ void reorder(const Protocol& protocol, const Whose& whose, std::uint64_t session
       williams_row(n, balanced_sequence(williams_rows(n), {whose.index, seed}));
   std::ranges::transform(row, places.begin(),
                          [&](int i) { return listed[static_cast<std::size_t>(i)]; });
+}
+
+// Each at the place that the group's own order gives it.
+void put_in_own_order(const Protocol& protocol, const Group& group, const std::vector<Unit>& units,
+                      std::vector<std::size_t>& places) {
+  std::ranges::sort(places, {}, [&](std::size_t place) {
+    const Block& last = protocol.leader(protocol.blocks[units[place].back()]);
+    return std::ranges::find(group.block_order, last.name) - group.block_order.begin();
+  });
 }
 }  // namespace
 
@@ -139,13 +155,15 @@ std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t 
     std::vector<const Unit*> ordered;
     std::ranges::transform(units, std::back_inserter(ordered),
                            [](const Unit& unit) { return &unit; });
-    if (protocol.block_order.order != Order::listed) {
-      const std::vector<std::size_t> places = moving(protocol, units);
-      std::vector<std::size_t> drawn = places;
+    const std::vector<std::size_t> places = moving(protocol, part.group, units);
+    std::vector<std::size_t> drawn = places;
+    if (has_own_order(part.group)) {
+      put_in_own_order(protocol, *part.group, units, drawn);
+    } else {
       reorder(protocol, whose, session, drawn);
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        ordered[places[i]] = &units[drawn[i]];
-      }
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      ordered[places[i]] = &units[drawn[i]];
     }
     for (const Unit* unit : ordered) {
       sequence.insert(sequence.end(), unit->begin(), unit->end());
@@ -158,8 +176,8 @@ std::vector<std::size_t> block_sequence(const Protocol& protocol, std::uint64_t 
 int balanced_block_orders(const Protocol& protocol, const Group* group) {
   int orders = 1;
   for (const Part& part : parts_of(protocol, group)) {
-    const std::size_t places = moving(protocol, units_of(protocol, part)).size();
-    if (protocol.block_order.order == Order::williams && places > 1) {
+    const std::size_t places = moving(protocol, group, units_of(protocol, part)).size();
+    if (protocol.block_order.order == Order::williams && !has_own_order(group) && places > 1) {
       orders = std::lcm(orders, williams_rows(static_cast<int>(places)));
     }
   }
@@ -223,10 +241,11 @@ Schedule mixed(std::vector<Schedule> of_blocks, std::uint64_t seed) {
 Schedule scheduled(const Protocol& protocol, const std::vector<std::size_t>& sequence,
                    std::uint64_t participant_seed, int order_index) {
   Schedule schedule;
+  const Group* const group = group_of(protocol, order_index);
   for (const Unit& unit : mixed_units(protocol, sequence)) {
     std::vector<Schedule> of_blocks;
     for (const std::size_t i : unit) {
-      const Block& block = protocol.blocks[i];
+      const Block block = block_of(group, protocol.blocks[i]);
       of_blocks.push_back(
           block.task->trials(block, draw_of(protocol.counterbalancing_seed, i, participant_seed,
                                             index_in_group(protocol, order_index))));

@@ -203,6 +203,19 @@ void MapReader::each_text(const Key& key, Presence presence,
              [&](MapReader& texts, const std::string& name) { take(name, texts.name(Key{name})); });
 }
 
+void MapReader::each_list(
+    const Key& key, Presence presence,
+    const std::function<void(MapReader& inner, const std::string& name)>& read) {
+  if (pass_ != nullptr) {
+    SchemaJson words{
+        {"type", "array"}, {"items", described_name()}, {"minItems", 1}, {"uniqueItems", true}};
+    pass_->add(key, described_named(std::move(words), presence == Presence::optional ? 0 : 1),
+               presence != Presence::optional, described_empty(presence == Presence::optional));
+    return;
+  }
+  each_named(key, presence, read);
+}
+
 void MapReader::each_named(
     const Key& key, Presence presence,
     const std::function<void(MapReader& inner, const std::string& name)>& read) {

@@ -185,6 +185,9 @@ class MapReader {
                   const std::function<void(const std::string&, const Eigen::Vector2d&)>& take);
   void each_text(const Key& key, Presence presence,
                  const std::function<void(const std::string&, const std::string&)>& take);
+  // A mapping from free names to lists of words, each of which `read` reads by its name.
+  void each_list(const Key& key, Presence presence,
+                 const std::function<void(MapReader& inner, const std::string& name)>& read);
   void list(const Key& key, Presence presence, const ReadMap& read);
 
   // "file:line:column: key.path" of this mapping, or of one of its keys.

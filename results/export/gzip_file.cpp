@@ -4,11 +4,11 @@
 
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/files/output_files.hpp"
 namespace tapstudy::results {
 namespace {
-core::InvalidInput failure(const std::string& file) {
-  return core::InvalidInput{file + ": writing failed (is the disk full?)"};
+core::WritingFailed failure(const std::string& file) {
+  return core::WritingFailed{file};
 }
 }  // namespace
 

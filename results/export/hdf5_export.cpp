@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/files/output_files.hpp"
 #include "results/export/csv_file.hpp"
 #include "results/export/study_export.hpp"
 #include "results/export/table.hpp"
@@ -69,7 +70,7 @@ class Owned {
   using Close = herr_t (*)(hid_t);
   Owned(hid_t id, Close close, const std::string& file) : id_{id}, close_{close} {
     if (id < 0) {
-      throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
+      throw core::WritingFailed{file};
     }
   }
   ~Owned() { close_(id_); }
@@ -86,7 +87,7 @@ class Owned {
 
 void check(herr_t code, const std::string& file) {
   if (code < 0) {
-    throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
+    throw core::WritingFailed{file};
   }
 }
 

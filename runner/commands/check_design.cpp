@@ -35,7 +35,7 @@ std::optional<int> first_not_multiple(const std::vector<int>& counts, int of) {
   return found == counts.end() ? std::nullopt : std::optional{*found};
 }
 
-// Of each group that does the block, as many participants as it has.
+// Of each group that does the block with these stimuli, as many participants as it has.
 void warn_of_balance(const protocols::Block& block, const std::vector<int>& participants) {
   const int conditions = static_cast<int>(protocols::conditions(block));
   if (!block.task->uses_order() || conditions < 2) {
@@ -64,11 +64,7 @@ void warn_of_balance(const protocols::Block& block, const std::vector<int>& part
 
 // Where one answer is right more often than others, accuracy alone says little.
 void warn_of_unequal_answers(const protocols::Block& block) {
-  std::map<std::string, int> right;
-  for (const std::string& stimulus : block.stimuli) {
-    const auto found = block.right_response.find(stimulus);
-    right[found == block.right_response.end() ? stimulus : found->second] += 1;
-  }
+  const std::map<std::string, int> right = protocols::right_answers(block);
   const auto most = std::ranges::max_element(right, {}, [](const auto& of) { return of.second; });
   const auto stimuli = static_cast<double>(block.stimuli.size());
   if (!block.right_response.empty() &&
@@ -115,14 +111,25 @@ bool warn_of_few_orders(const protocols::Protocol& protocol, const protocols::Bl
   return true;
 }
 
+// That are counted, of so many in all groups.
+int answers_of_all(const protocols::Protocol& protocol, const protocols::Block& block, int in_all) {
+  int answers = 0;
+  for (int i = 0; i < in_all; ++i) {
+    const protocols::Group* const group = protocols::group_of(protocol, i);
+    answers += protocols::does(group, block)
+                   ? block.task->counted_answers(protocols::block_of(group, block))
+                   : 0;
+  }
+  return answers;
+}
+
 void print_power(const protocols::Protocol& protocol, const protocols::Block& block, int in_all) {
   const double chance = block.task->chance_level(block, protocol);
   if (warn_of_few_orders(protocol, block, in_all)) {
     fmt::print("    chance {:.0f} %\n", 100.0 * chance);
     return;
   }
-  const int answers =
-      protocols::participants_of(protocol, block, in_all) * block.task->counted_answers(block);
+  const int answers = answers_of_all(protocol, block, in_all);
   const int critical = analysis::critical_successes(answers, chance, alpha);
   fmt::print(
       "    chance {:.0f} %; of {} answers {} must {} for p < .05 (one-sided, as if all answers "
@@ -264,8 +271,11 @@ std::string described_order(const BlockOrderDealt& order, const protocols::Proto
 
 // Who practises after counted trials learnt in trials that count.
 void print_orders_of_practice(const protocols::Protocol& protocol) {
-  if (protocol.block_order.order == protocols::Order::listed ||
-      std::ranges::none_of(protocol.blocks, &protocols::Block::is_practice)) {
+  const bool is_in_file_order = protocol.block_order.order == protocols::Order::listed &&
+                                std::ranges::all_of(protocol.groups, [](const auto& group) {
+                                  return group.block_order.empty();
+                                });
+  if (is_in_file_order || std::ranges::none_of(protocol.blocks, &protocols::Block::is_practice)) {
     return;
   }
   constexpr std::size_t max_printed = 12;
@@ -315,7 +325,8 @@ void warn_of_block_order(const protocols::Protocol& protocol, int participants) 
   const bool are_confounded =
       std::ranges::any_of(protocols::groups_of(protocol), [&](const protocols::Group* const group) {
         std::set<std::pair<const protocols::Task*, std::string>> known;
-        return std::ranges::any_of(protocol.blocks, [&](const protocols::Block& block) {
+        const bool has_own_order = group != nullptr && !group->block_order.empty();
+        return !has_own_order && std::ranges::any_of(protocol.blocks, [&](const auto& block) {
           return protocols::does(group, block) && !is_fixed(block) &&
                  !known.emplace(block.task, block.session).second;
         });
@@ -328,16 +339,34 @@ void warn_of_block_order(const protocols::Protocol& protocol, int participants) 
   }
 }
 
-// Of each group that does the block, or of all.
-std::vector<int> members_who_do(const protocols::Block& block, const protocols::Protocol& protocol,
-                                int participants) {
-  std::vector<int> counts;
+// How many participants there are in each group that does the block, by the stimuli that it is
+// presented; of all where there are no groups.
+std::map<std::vector<std::string>, std::vector<int>> members_by_stimuli(
+    const protocols::Block& block, const protocols::Protocol& protocol, int participants) {
+  std::map<std::vector<std::string>, std::vector<int>> counts;
   for (const protocols::Group* const group : protocols::groups_of(protocol)) {
     if (protocols::does(group, block)) {
-      counts.push_back(protocols::members(protocol, group, participants));
+      counts[protocols::block_of(group, block).stimuli].push_back(
+          protocols::members(protocol, group, participants));
     }
   }
   return counts;
+}
+
+void warn_of_design(const protocols::Block& block, const protocols::Protocol& protocol,
+                    int participants) {
+  const auto members = members_by_stimuli(block, protocol, participants);
+  for (const auto& [stimuli, counts] : members) {
+    protocols::Block own = block;
+    own.stimuli = stimuli;
+    if (members.size() > 1) {
+      fmt::print("    of those who are presented {}:\n", fmt::join(stimuli, ", "));
+    }
+    warn_of_balance(own, counts);
+    if (!block.comparison && block.task->has_chance_level()) {
+      warn_of_unequal_answers(own);
+    }
+  }
 }
 
 void print_blocks(const protocols::Protocol& protocol, const BlockLengths& lengths,
@@ -355,7 +384,7 @@ void print_blocks(const protocols::Protocol& protocol, const BlockLengths& lengt
     if (block.is_practice) {
       continue;  // in no result
     }
-    warn_of_balance(block, members_who_do(block, protocol, participants));
+    warn_of_design(block, protocol, participants);
     if (block.comparison) {
       print_procedures(protocol.stimulus(block.stimuli.front()), *block.comparison,
                        block.task->has_own_guess_rate()
@@ -363,7 +392,6 @@ void print_blocks(const protocols::Protocol& protocol, const BlockLengths& lengt
                            : std::optional{block.task->guess_rate(block, protocol)});
     } else if (block.task->has_chance_level()) {
       print_power(protocol, block, participants);
-      warn_of_unequal_answers(block);
     }
   }
 }
@@ -380,7 +408,8 @@ Session session_of(const protocols::Group* group, const protocols::Protocol& pro
   Session session{.screens_s = seconds_of_screens(protocol, group, lengths)};
   for (const protocols::Block& block : protocol.blocks) {
     if (protocols::does(group, block)) {
-      const int trials = lengths.at(block.name).usual;
+      const int trials = lengths.at(block.name).usual - protocols::planned_trials(block) +
+                         protocols::planned_trials(protocols::block_of(group, block));
       const double seconds = trials * simulated_trial_s(protocol, block);
       session.trials += trials;
       session.tapped_s += seconds;
@@ -390,12 +419,23 @@ Session session_of(const protocols::Group* group, const protocols::Protocol& pro
   return session;
 }
 
+// "; in the order b, a; of test: mdf_two, mdf_three"
+std::string described_differences(const protocols::Group& group) {
+  std::string words = group.block_order.empty()
+                          ? ""
+                          : fmt::format("; in the order {}", fmt::join(group.block_order, ", "));
+  for (const auto& [block, stimuli] : group.stimuli) {
+    words += fmt::format("; of {}: {}", block, fmt::join(stimuli, ", "));
+  }
+  return words;
+}
+
 // "group trained (with training): practice, training, test; about 40 trials; 5 of 10"
 std::string described_group(const protocols::Group& group, const Session& session, int members,
                             int participants) {
-  return fmt::format("group {}{}: {}; {}; {} of {}", group.name,
+  return fmt::format("group {}{}: {}{}; {}; {} of {}", group.name,
                      group.label == group.name ? "" : fmt::format(" ({})", group.label),
-                     fmt::join(group.blocks, ", "),
+                     fmt::join(group.blocks, ", "), described_differences(group),
                      counted(static_cast<std::size_t>(session.trials), "trial"), members,
                      participants);
 }

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -19,6 +21,7 @@
 #include "results/server/pull.hpp"
 #include "results/store/store.hpp"
 #include "runner/commands/command_line.hpp"
+#include "runner/studies/counted.hpp"
 #include "runner/studies/mixed_models/fit_in_r.hpp"
 #include "runner/studies/shares/merge.hpp"
 #include "runner/studies/study_summary.hpp"
@@ -107,6 +110,40 @@ Summary summary_of_directories(const ReportOptions& options,
   return summary_of_stores(options, {whole.path()}, only);
 }
 
+// What an earlier report left in its place, and this one does not write: tables and figures.
+std::vector<std::string> left_of_earlier_report(const std::string& folder,
+                                                const std::vector<core::NewFile>& files) {
+  std::set<std::string> left;
+  std::error_code error;
+  const auto look_in = [&](const fs::path& in, const std::set<std::string>& kinds) {
+    for (fs::directory_iterator at{in, error}, end; !error && at != end; at.increment(error)) {
+      if (kinds.contains(at->path().extension().string())) {
+        left.insert(at->path().string());
+      }
+    }
+  };
+  look_in(folder, {".csv"});
+  look_in(fs::path{folder} / "figures", {".svg", ".pdf"});
+  for (const core::NewFile& file : files) {
+    left.erase(file.name);
+  }
+  return {left.begin(), left.end()};
+}
+
+void warn_of_left_files(const std::string& folder, const std::vector<core::NewFile>& files) {
+  constexpr std::size_t most_named = 3;
+  const std::vector<std::string> left = left_of_earlier_report(folder, files);
+  if (!left.empty()) {
+    warn(fmt::format(
+        "{}: {} that this report does not have stay there: {}{}", folder,
+        counted(left.size(), "file"),
+        fmt::join(left.begin(),
+                  left.begin() + static_cast<std::ptrdiff_t>(std::min(left.size(), most_named)),
+                  ", "),
+        left.size() > most_named ? ", …" : ""));
+  }
+}
+
 void write_files(const ReportOptions& options, const Summary& summary, Progress& progress) {
   const auto figure_files = analysis::figure_files(summary);
   const core::CountHook count = progress.count();
@@ -132,6 +169,7 @@ void write_files(const ReportOptions& options, const Summary& summary, Progress&
     core::tell_count(count, ++drawn, figure_files.size());
   }
   core::write_all_or_none(files, options.replace ? core::Existing::replaced : core::Existing::kept);
+  warn_of_left_files(options.out, files);
   constexpr std::size_t whole = 3;  // files that hold all of it
   for (std::size_t i = 0; i < whole; ++i) {
     fmt::print("{}\n", files[i].name);
@@ -156,8 +194,8 @@ void check_output_is_new(const ReportOptions& options) {
 bool reads_columns(const ReportOptions& options) {
   return options.table.columns.are_given() || !options.table.conditions.empty() ||
          !options.responses.empty() || !options.order.empty() || !options.table.encoding.empty() ||
-         options.table.merges_alike || options.table.pools_runs || options.table.counts_practice ||
-         options.table.are_counts || !options.rows.empty();
+         options.table.merges_alike || options.table.pools_runs || options.table.pools_tasks ||
+         options.table.counts_practice || options.table.are_counts || !options.rows.empty();
 }
 
 TableOptions table_options(const ReportOptions& options) {
@@ -218,7 +256,8 @@ void check_options(const ReportOptions& options) {
   if (!options.directories.empty() && reads_columns(options)) {
     throw core::InvalidInput{
         "options with columns, --where, --responses, --order, --weights, --encoding, "
-        "--merge-alike, --pool-runs, --count-practice, --are-counts and --rows say how to read "
+        "--merge-alike, --pool-runs, --pool-tasks, --count-practice, --are-counts and --rows say "
+        "how to read "
         "--counts FILE.csv"};
   }
   if (is_of_server(options) && (options.directories.size() > 1 || options.out.empty())) {
@@ -287,6 +326,8 @@ void add_table_options(Command& command, const std::shared_ptr<ReportOptions>& o
                "With --counts: names that read alike are one, the first of them");
   command.flag("--pool-runs", options->table.pools_runs,
                "With --counts: several runs of one participant count together");
+  command.flag("--pool-tasks", options->table.pools_tasks,
+               "With --counts: several tasks, which a column names, count together");
   command.flag(
       "--count-practice", options->table.counts_practice,
       "With --counts: rows that a column calls practice, or not to be counted, count like others");

@@ -128,24 +128,32 @@ std::string describe_constraints(const protocols::OrderConstraints& constraints)
 CitingText describe_williams_order(const Block& block, const Protocol& protocol,
                                    const std::vector<GroupMembers>& groups) {
   const auto place = static_cast<std::size_t>(&block - protocol.blocks.data());
-  const std::size_t n = protocols::conditions(block);
   const auto order_of = [&](int order_index) {
     const auto conditions = protocols::ordered_conditions(
-        block, protocols::draw_of(protocol.counterbalancing_seed, place, 0,
-                                  protocols::index_in_group(protocol, order_index)));
+        protocols::block_of(protocols::group_of(protocol, order_index), block),
+        protocols::draw_of(protocol.counterbalancing_seed, place, 0,
+                           protocols::index_in_group(protocol, order_index)));
     std::vector<std::size_t> order;
-    std::transform(conditions.begin(), conditions.begin() + static_cast<std::ptrdiff_t>(n),
-                   std::back_inserter(order), [](const auto& next) { return next.condition; });
+    const auto n = std::ssize(conditions) / block.repetitions;
+    std::transform(conditions.begin(), conditions.begin() + n, std::back_inserter(order),
+                   [](const auto& next) { return next.condition; });
     return order;
   };
   std::vector<DealtOrders> dealt;
   for (const GroupMembers& members : groups) {
     if (protocols::does(members.group, block)) {
+      const std::size_t n = protocols::conditions(protocols::block_of(members.group, block));
       dealt.push_back(
           dealt_orders(protocols::williams_rows(static_cast<int>(n)), members, order_of));
     }
   }
   return describe_williams_orders(dealt);
+}
+
+bool have_own_stimuli(const Block& block, const std::vector<GroupMembers>& groups) {
+  return std::ranges::any_of(groups, [&](const GroupMembers& members) {
+    return members.group != nullptr && members.group->stimuli.contains(block.name);
+  });
 }
 
 // ", in random order"; "" where the block's task has an order of its own.
@@ -156,7 +164,8 @@ CitingText describe_order(const Block& block, const Protocol& protocol,
   }
   switch (block.order) {
     case protocols::Order::listed:
-      return ", in one order for all";
+      return fmt::format(", in one order for all{}",
+                         have_own_stimuli(block, groups) ? " of a group" : "");
     case protocols::Order::shuffle:
       return ", in random order" + describe_constraints(block.constraints);
     case protocols::Order::shuffle_within_repetition:
@@ -181,6 +190,9 @@ CitingText describe_sequence(const Protocol& protocol, const std::string& who,
                              const std::vector<CitingText>& blocks,
                              const std::vector<GroupMembers>& groups) {
   const protocols::BlockOrder& order = protocol.block_order;
+  const bool have_own_orders = std::ranges::any_of(groups, [](const GroupMembers& members) {
+    return members.group != nullptr && !members.group->block_order.empty();
+  });
   const CitingText done = have_own_blocks(groups, protocol)
                               ? citing("Each group did its own of these blocks, in this order: {}",
                                        core::joined(blocks, "; "))
@@ -196,8 +208,9 @@ CitingText describe_sequence(const Protocol& protocol, const std::string& who,
     return dealt_orders(protocols::balanced_block_orders(protocol, members.group), members,
                         order_of);
   });
-  return citing("{}, where '{}' exchanged their places among participants{}. ", done,
+  return citing("{}, where '{}' exchanged their places among participants{}{}. ", done,
                 fmt::join(order.blocks, "', '"),
+                have_own_orders ? " of groups without an order of their own" : "",
                 order.order == protocols::Order::shuffle ? CitingText{", in random order"}
                                                          : describe_williams_orders(dealt));
 }
@@ -300,34 +313,54 @@ std::string describe_taps(const Block& block) {
 // The completed share of the block, if not all participants did all of it; the total is unknown
 // where a block may end early.
 std::string describe_completion(const Block& block, const results::BlockCourseRow& done,
-                                std::size_t participants) {
+                                const std::vector<GroupMembers>& groups) {
+  const std::size_t participants = asked_of(block, groups);
   std::string words = block.presented_if ? fmt::format(", only for those who answered {}",
                                                        describe(*block.presented_if))
                                          : "";
   if (done.participants.size() < participants) {
     words += fmt::format(", by {} of {} participants", done.participants.size(), participants);
   }
-  const std::size_t who = block.presented_if ? done.participants.size() : participants;
-  const auto planned = static_cast<std::size_t>(protocols::planned_trials(block)) * who;
+  std::size_t planned = 0;
+  for (const GroupMembers& members : groups) {
+    const auto trials = protocols::planned_trials(protocols::block_of(members.group, block));
+    const auto who = std::ranges::count_if(members.participants, [&](const auto& person) {
+      return !block.presented_if || done.participants.contains(person.first);
+    });
+    planned += protocols::does(members.group, block) ? static_cast<std::size_t>(trials * who) : 0;
+  }
   if (!may_end_early(block) && static_cast<std::size_t>(done.answered) < planned) {
     words += fmt::format(", {} of {} answers given", done.answered, planned);
   }
   return words;
 }
 
+// "24 trials", or "12 to 24 trials" where groups have fewer stimuli.
+std::string described_trials(const Block& block, const std::vector<GroupMembers>& groups) {
+  std::set<int> trials;
+  for (const GroupMembers& members : groups) {
+    if (protocols::does(members.group, block)) {
+      trials.insert(protocols::planned_trials(protocols::block_of(members.group, block)));
+    }
+  }
+  const std::string most = counted(static_cast<std::size_t>(*trials.rbegin()), "trial");
+  return trials.size() > 1 ? fmt::format("{} to {}", *trials.begin(), most) : most;
+}
+
 CitingText describe_block(const Block& block, const results::BlockCourseRow& done,
                           const Protocol& protocol, const std::vector<GroupMembers>& groups) {
-  const auto trials = static_cast<std::size_t>(protocols::planned_trials(block));
+  const bool are_own = have_own_stimuli(block, groups);
   return citing(
-      "'{}' ({} of {}{}, {}{}{}{}{}{}{}{}{})", block.name, block.task->name(),
+      "'{}' ({} of {}{}{}, {}{}{}{}{}{}{}{}{})", block.name, block.task->name(),
       block.stimuli.size() == 1 ? "one stimulus" : fmt::format("{} stimuli", block.stimuli.size()),
+      are_own ? ", of which groups were presented their own" : "",
       block.presented == protocols::Presented::real_plates ? ", the real plates themselves" : "",
-      may_end_early(block) ? "at most " : "", counted(trials, "trial"),
+      may_end_early(block) ? "at most " : "", described_trials(block, groups),
       block.catch_trials ? fmt::format(", {} of them catch trials", block.catch_trials->count) : "",
       block.confidence ? fmt::format(", each with confidence in {} steps", block.confidence->steps)
                        : "",
       describe_order(block, protocol, groups), describe_levels(block), describe_taps(block),
-      describe_practice(block), describe_completion(block, done, asked_of(block, groups)));
+      describe_practice(block), describe_completion(block, done, groups));
 }
 
 // Letters that stand for something else in each trial, and are what is answered.
@@ -435,6 +468,17 @@ CitingText questionnaires(const Protocol& protocol, const DoneBlocks& done) {
   return forms.empty() ? "" : citing("Questionnaires: {}. ", core::joined(forms, "; "));
 }
 
+// ", in the order 'b', 'a', presented of 'test' 'mdf_two', 'mdf_three'"
+std::string described_differences(const protocols::Group& group) {
+  std::string words = group.block_order.empty() ? ""
+                                                : fmt::format(", in the order '{}'",
+                                                              fmt::join(group.block_order, "', '"));
+  for (const auto& [block, stimuli] : group.stimuli) {
+    words += fmt::format(", presented of '{}' '{}'", block, fmt::join(stimuli, "', '"));
+  }
+  return words;
+}
+
 // "" where the protocol has none. Of excluded participants nothing is said.
 CitingText describe_groups(const std::vector<GroupMembers>& groups,
                            const std::vector<results::SessionRow>& sessions) {
@@ -444,9 +488,9 @@ CitingText describe_groups(const std::vector<GroupMembers>& groups,
   std::vector<std::string> described;
   std::set<std::string> given;
   for (const GroupMembers& members : groups) {
-    described.push_back(fmt::format("'{}' (n = {}) did '{}'", members.group->label,
-                                    members.participants.size(),
-                                    fmt::join(members.group->blocks, "', '")));
+    described.push_back(fmt::format(
+        "'{}' (n = {}) did '{}'{}", members.group->label, members.participants.size(),
+        fmt::join(members.group->blocks, "', '"), described_differences(*members.group)));
     for (const results::SessionRow& session : sessions) {
       if (session.group && session.group->is_given &&
           members.participants.contains(session.participant_id)) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "analysis/statistics/resampling/replicates.hpp"
+#include "protocols/procedures/quest_plus_track.hpp"
 #include "protocols/protocol.hpp"
 #include "protocols/schedule/schedule.hpp"
 #include "results/export/table.hpp"
@@ -77,7 +78,8 @@ TrackResult result_of(const protocols::Track& track, const protocols::TrackSetti
     result.parameters.push_back({posterior.name,
                                  posterior.mean,
                                  {quantile(posterior, 0.025), quantile(posterior, 0.975)},
-                                 posterior.standard_deviation});
+                                 posterior.standard_deviation,
+                                 protocols::is_at_end_of_grid(posterior, settings)});
   }
   return result;
 }

@@ -90,25 +90,33 @@ constexpr int not_counted = -1;
 // All participants of one draw share its counterbalancing. Catch trials stay in their places.
 analysis::BlockDesign::Redraw redraw_of(const protocols::Protocol& protocol,
                                         std::size_t block_index) {
-  const protocols::Block& block = protocol.blocks[block_index];
+  std::vector<protocols::Block> of_groups;
+  for (const protocols::Group* const group : protocols::groups_of(protocol)) {
+    of_groups.push_back(protocols::block_of(group, protocol.blocks[block_index]));
+  }
+  const std::vector<std::string>& all = protocol.blocks[block_index].stimuli;
   const std::uint64_t study_seed = protocol.counterbalancing_seed;
   const std::size_t groups = protocol.groups.size();
-  return
-      [block, block_index, study_seed, groups](const analysis::Place& place, std::uint64_t draw) {
-        const std::uint64_t seed = core::derived_seed(
-            draw, core::Purpose::participant, static_cast<std::uint64_t>(place.participant_index));
-        protocols::Draw redrawn = protocols::draw_of(
-            study_seed, block_index, seed, protocols::index_in_group(groups, place.order_index));
-        redrawn.counterbalancing_seed = draw;
-        std::vector<int> stimuli;
-        for (const auto& next : protocols::ordered_conditions(block, redrawn)) {
-          stimuli.push_back(static_cast<int>(protocols::stimulus_of(block, next.condition)));
-        }
-        for (const std::size_t at : protocols::catch_places(block, redrawn, stimuli.size())) {
-          stimuli.insert(stimuli.begin() + static_cast<std::ptrdiff_t>(at), not_counted);
-        }
-        return stimuli;
-      };
+  return [of_groups, all, block_index, study_seed, groups](const analysis::Place& place,
+                                                           std::uint64_t draw) {
+    const std::uint64_t seed = core::derived_seed(
+        draw, core::Purpose::participant, static_cast<std::uint64_t>(place.participant_index));
+    protocols::Draw redrawn = protocols::draw_of(
+        study_seed, block_index, seed, protocols::index_in_group(groups, place.order_index));
+    redrawn.counterbalancing_seed = draw;
+    const protocols::Block& block =
+        groups == 0 ? of_groups.front()
+                    : of_groups[protocols::place_of_group(study_seed, groups, place.order_index)];
+    std::vector<int> stimuli;
+    for (const auto& next : protocols::ordered_conditions(block, redrawn)) {
+      const std::string& name = block.stimuli[protocols::stimulus_of(block, next.condition)];
+      stimuli.push_back(static_cast<int>(std::ranges::find(all, name) - all.begin()));
+    }
+    for (const std::size_t at : protocols::catch_places(block, redrawn, stimuli.size())) {
+      stimuli.insert(stimuli.begin() + static_cast<std::ptrdiff_t>(at), not_counted);
+    }
+    return stimuli;
+  };
 }
 
 // Only a random order can be drawn again.
@@ -647,6 +655,27 @@ std::vector<analysis::ParticipantGroup> participant_groups(
   return groups;
 }
 
+// Blocks that two groups did with different stimuli.
+std::vector<analysis::DifferentStimuli> different_stimuli(const protocols::Protocol& protocol) {
+  std::vector<analysis::DifferentStimuli> different;
+  for (const protocols::Block& block : protocol.blocks) {
+    for (auto first = protocol.groups.begin(); first != protocol.groups.end(); ++first) {
+      for (auto second = std::next(first); second != protocol.groups.end(); ++second) {
+        const protocols::Block own = protocols::block_of(&*first, block);
+        const protocols::Block other = protocols::block_of(&*second, block);
+        if (!block.is_practice && protocols::does(&*first, block) &&
+            protocols::does(&*second, block) &&
+            std::set<std::string>(own.stimuli.begin(), own.stimuli.end()) !=
+                std::set<std::string>(other.stimuli.begin(), other.stimuli.end())) {
+          different.push_back({block.name, first->label, second->label,
+                               protocols::right_answers(own) == protocols::right_answers(other)});
+        }
+      }
+    }
+  }
+  return different;
+}
+
 // Hypotheses are adjusted for the number of all of them, so that theirs are always computed, and
 // contrasts, groups and what is measured again are of all blocks, whose main results do. A block
 // without answers is one that the report tells of.
@@ -706,7 +735,8 @@ void add_comparisons(const protocols::Protocol& protocol, const StoredResults& a
                                      protocol.block_order.order == protocols::Order::listed);
   });
   add(names::groups, [&] {
-    return analysis::groups_section(summary.blocks, participant_groups(protocol, all.sessions));
+    return analysis::groups_section(summary.blocks, participant_groups(protocol, all.sessions),
+                                    different_stimuli(protocol));
   });
 }
 }  // namespace

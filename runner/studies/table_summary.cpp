@@ -87,6 +87,7 @@ analysis::AnswerReading reading_of(const TableOptions& options) {
   reading.order = options.order;
   reading.merges_alike = options.merges_alike;
   reading.pools_runs = options.pools_runs;
+  reading.pools_tasks = options.pools_tasks;
   reading.counts_practice = options.counts_practice;
   reading.are_counts = options.are_counts;
   for (const std::string& response : options.responses) {

@@ -16,6 +16,7 @@ struct TableOptions {
   std::string encoding{};                 // as iconv calls it; empty: UTF-8
   bool merges_alike{false};
   bool pools_runs{false};
+  bool pools_tasks{false};
   bool counts_practice{false};
   bool are_counts{false};                      // also what looks like percentages or sums
   std::optional<analysis::MatrixRows> rows{};  // of a matrix whose corner does not say it

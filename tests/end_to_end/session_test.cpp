@@ -490,7 +490,20 @@ TEST_CASE("a report that cannot be written leaves nothing behind, and the next o
             "(ulimit -f 8; tapstudy report $out --out reports >/dev/null; echo $?); ls reports\n"
             "tapstudy report $out --out reports >/dev/null; echo $?; ls reports");
   CHECK_THAT(result.standard_output,
-             Catch::Matchers::StartsWith("2\n0\n") && Contains("report.html\nreport.json\n"));
+             Catch::Matchers::StartsWith("5\n0\n") && Contains("report.html\nreport.json\n"));
+}
+
+TEST_CASE("a report that replaces a larger one names the files of it that stay", "[end_to_end]") {
+  const TempDirectory directory;
+  const auto result =
+      shell(directory,
+            "tapstudy simulate $study --participants 2 --seed 1 --out $out >/dev/null 2>&1\n"
+            "tapstudy report $out --out reports >/dev/null 2>&1\n"
+            "tapstudy report $out --out reports --replace >/dev/null 2>same\n"
+            "tapstudy report $out --out reports --replace --only sessions >/dev/null 2>fewer\n"
+            "grep -c 'stay there' same; grep 'stay there' fewer");
+  CHECK_THAT(result.standard_output,
+             Catch::Matchers::StartsWith("0\n") && Contains("reports: ") && Contains(".csv"));
 }
 
 TEST_CASE("a report of a study names the sessions that ended early", "[end_to_end]") {

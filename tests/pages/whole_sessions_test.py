@@ -526,6 +526,7 @@ class Interruption(WholeSession):
         browser.wait_for_screen(self.driver, "paused")
         browser.wait_for_state(self.operator, "paused")
         self.assertEqual(browser.operator_state(self.operator)["force"], "off")
+        self.assertRegex(browser.find(self.operator, "#session").text, r"1 of 8 done · \d+ min so far")
         self.session.type("resume")
         self.next_trial(2)
         self.session.type("skip")

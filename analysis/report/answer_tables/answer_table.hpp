@@ -27,6 +27,7 @@ struct AnswerReading {
   std::map<std::string, std::string> responses{};
   bool merges_alike{false};          // names that read alike are one, the first of them
   bool pools_runs{false};            // of one participant
+  bool pools_tasks{false};           // that a column names
   bool counts_practice{false};       // rows that a column calls practice are answers like others
   bool are_counts{false};            // also what looks like percentages, or like sums of others
   std::vector<std::string> order{};  // of stimuli and responses; empty: as they first appear

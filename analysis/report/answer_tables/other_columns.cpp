@@ -1,6 +1,7 @@
 #include "analysis/report/answer_tables/other_columns.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -399,6 +400,39 @@ void check_begins_not_with_practice(const FileAnswers& of, const OtherColumn& co
   }
 }
 
+bool is_called_after_tasks(const std::string& name) {
+  constexpr std::array<std::string_view, 8> known{"task",  "aufgabe", "tache", "tâche",
+                                                  "tarea", "compito", "課題",  "paradigm"};
+  return has_word(name, known);
+}
+
+// Answers to different tasks are no matrix of one, whichever file they are in.
+void check_is_of_one_task(const std::vector<FileAnswers>& files) {
+  std::map<std::string, std::map<std::string_view, const AnswerOrigin*>> tasks;  // by column
+  for (const FileAnswers& of : files) {
+    for (const OtherColumn& column : of.columns) {
+      for (std::size_t i = 0; is_called_after_tasks(column.name) && i < column.cells.size(); ++i) {
+        if (!is_missing(std::string{column.cells[i]})) {
+          tasks[column.name].emplace(column.cells[i], of.origins[i]);
+        }
+      }
+    }
+  }
+  for (const auto& [column, values] : tasks) {
+    if (values.size() < 2) {
+      continue;
+    }
+    std::vector<std::string_view> names;
+    for (const auto& [value, origin] : values) {
+      names.push_back(value);
+    }
+    ask(*values.rbegin()->second,
+        fmt::format("the column '{0}' names {1} tasks ({2}), whose answers are no matrix of one: "
+                    "keep one of them (--where '{0}={3}'), or count all by --pool-tasks",
+                    column, names.size(), fmt::join(names, ", "), names.front()));
+  }
+}
+
 void check_column(const FileAnswers& of, const OtherColumn& column, const AnswerReading& reading,
                   bool are_participants_known) {
   if (reading.columns.correct.empty()) {
@@ -419,8 +453,11 @@ void check_other_columns(const std::vector<OtherColumns>& files,
                          const AnswerReading& reading, bool are_participants_known) {
   const bool has_runs_alone =
       !reading.pools_runs && are_participants_known && !is_counted_already(answers);
+  std::vector<FileAnswers> all;
   for (const OtherColumns& file : files) {
-    const FileAnswers of = answers_of(file, answers, origins);
+    all.push_back(answers_of(file, answers, origins));
+  }
+  for (const FileAnswers& of : all) {
     for (const OtherColumn& column : of.columns) {
       check_column(of, column, reading, are_participants_known);
     }
@@ -429,6 +466,9 @@ void check_other_columns(const std::vector<OtherColumns>& files,
       check_has_each_trial_once(of);
       check_has_each_row_once(of);
     }
+  }
+  if (!reading.pools_tasks) {
+    check_is_of_one_task(all);
   }
 }
 }  // namespace tapstudy::analysis

@@ -11,6 +11,7 @@ namespace tapstudy::analysis {
 // - where participants are not known, few values, each in many rows one after the other;
 // - the same answers once for each value; trials of one participant with the same number, or rows
 //   that are the same to the letter;
+// - several values of a column that is called after tasks;
 // - a text at the first few answers of every participant, and never later: as practice has it.
 void check_other_columns(const std::vector<OtherColumns>& files,
                          const std::vector<results::AnswerRow>& answers,

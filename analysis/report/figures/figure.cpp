@@ -57,9 +57,9 @@ void draw_with_gnuplot(const std::string& script, const std::string& file) {
   try {
     run_gnuplot(script, file);
     if (!is_whole(file)) {
-      throw core::InvalidInput{file + ": writing failed (is the disk full?)"};
+      throw core::WritingFailed{file};
     }
-  } catch (const core::InvalidInput&) {
+  } catch (const core::Error&) {
     std::error_code error;
     std::filesystem::remove(file, error);
     throw;

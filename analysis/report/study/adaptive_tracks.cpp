@@ -1,5 +1,8 @@
 #include "analysis/report/study/adaptive_tracks.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -104,6 +107,29 @@ ReportTable posteriors_table(const std::vector<TrackResult>& tracks) {
   }
   return table;
 }
+// "slope in 'jnd' of 2 of 5 tracks"
+std::vector<std::string> described_ends(const std::vector<TrackResult>& tracks) {
+  struct Ends {
+    std::size_t at_end{};
+    std::size_t all{};
+  };
+  std::map<std::pair<std::string, std::string>, Ends> ends;  // by block and parameter
+  for (const TrackResult& track : tracks) {
+    for (const ParameterEstimate& parameter : track.parameters) {
+      Ends& of = ends[{track.block, parameter.name}];
+      of.at_end += parameter.is_at_end ? 1 : 0;
+      ++of.all;
+    }
+  }
+  std::vector<std::string> described;
+  for (const auto& [of, counts] : ends) {
+    if (counts.at_end > 0) {
+      described.push_back(fmt::format("{} in '{}' of {} of {} tracks", of.second, of.first,
+                                      counts.at_end, counts.all));
+    }
+  }
+  return described;
+}
 }  // namespace
 
 ReportSection procedures_section(const std::vector<TrackResult>& tracks) {
@@ -118,6 +144,12 @@ ReportSection procedures_section(const std::vector<TrackResult>& tracks) {
         "origin. Means count each participant once, and their intervals are by t. The results "
         "above "
         "fit all answers of a participant anew."};
+  }
+  if (const auto ends = described_ends(tracks); !ends.empty()) {
+    section.remarks.emplace_back(
+        fmt::format("The most probable value lies at an end of the procedure's grid, beyond which "
+                    "it knew none, so that the estimate is one of the grid: {}.",
+                    fmt::join(ends, "; ")));
   }
   return section;
 }

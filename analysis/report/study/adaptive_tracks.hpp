@@ -12,6 +12,7 @@ struct ParameterEstimate {
   double mean{};
   Interval range;  // 95 %, equal tails
   double standard_deviation{};
+  bool is_at_end{};  // of the grid: the most probable value, so that the posterior is cut off
 };
 
 // What a procedure that chose the levels knew after a participant's last answer.

@@ -149,12 +149,29 @@ CitingText how_it_was_computed() {
 
 using Contrasts = std::map<std::string, std::vector<Contrast>>;  // by measure
 
+bool are_comparable(const BlockSummary& block, const GroupValues& first, const GroupValues& second,
+                    const std::vector<DifferentStimuli>& different) {
+  return std::ranges::none_of(different, [&](const DifferentStimuli& of) {
+    return !of.are_same_answers_right && of.block == block.block &&
+           of.first == first.group->label && of.second == second.group->label;
+  });
+}
+
+std::string in_words(const DifferentStimuli& of) {
+  return fmt::format("In '{}', {} and {} were presented different stimuli: {}.", of.block, of.first,
+                     of.second,
+                     of.are_same_answers_right
+                         ? "their difference is that of the groups and of the stimuli together"
+                         : "as other answers are right for these, their values are not compared");
+}
+
 // Of each two groups of more than one participant.
 void add_contrasts(const BlockSummary& block, const std::vector<GroupValues>& values,
-                   Contrasts& contrasts) {
+                   const std::vector<DifferentStimuli>& different, Contrasts& contrasts) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     for (std::size_t j = i + 1; j < values.size(); ++j) {
-      if (values[i].all.size() > 1 && values[j].all.size() > 1) {
+      if (values[i].all.size() > 1 && values[j].all.size() > 1 &&
+          are_comparable(block, values[i], values[j], different)) {
         contrasts[block.personal->measure].push_back(contrast_of(block, values[i], values[j]));
       }
     }
@@ -199,7 +216,7 @@ HypothesisResult compare_groups(const PlannedComparison& planned, const BlockSum
 
 std::optional<ReportSection> groups_section(
     const std::vector<std::shared_ptr<const BlockSummary>>& blocks,
-    const std::vector<ParticipantGroup>& groups) {
+    const std::vector<ParticipantGroup>& groups, const std::vector<DifferentStimuli>& different) {
   ReportTable means{"groups",
                     "Each group in the blocks that several did",
                     {column("block", "block"), column("measure", "measure"),
@@ -210,7 +227,7 @@ std::optional<ReportSection> groups_section(
     const auto values = block->personal ? groups_in(*block, groups) : std::vector<GroupValues>{};
     if (values.size() > 1) {
       add_means(*block, values, means);
-      add_contrasts(*block, values, contrasts);
+      add_contrasts(*block, values, different, contrasts);
     }
   }
   if (means.rows.empty()) {
@@ -229,6 +246,9 @@ std::optional<ReportSection> groups_section(
   section.name = study_sections::groups;
   section.findings = std::move(findings);
   section.remarks.emplace_back(how_it_was_computed());
+  for (const DifferentStimuli& of : different) {
+    section.remarks.emplace_back(in_words(of));
+  }
   return section;
 }
 }  // namespace tapstudy::analysis

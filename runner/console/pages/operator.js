@@ -5,18 +5,23 @@ import { byId, el, onThemeChange, setText, showIfChanged } from "./dom.js";
 import { Actions } from "./operator_actions.js";
 import { showLastAnswer, showLog, showMachine, showTrial } from "./operator_parts.js";
 import { LivePlots } from "./operator_plots.js";
-import { loadWords, timeIn, word, wordOr } from "./words.js";
+import { loadWords, SessionTime, word, wordOr } from "./words.js";
 
 let state = null;
 let actions = null;
 let plots = null;
+const time = new SessionTime(() => showSession(state));
 
-function showSession({ study, participant, mode, is_blind: isBlind, progress }) {
+const isOver = ({ state: name }) => ["ended", "stopped"].includes(name);
+
+function showSession(next) {
+  const { study, participant, mode, is_blind: isBlind } = next;
   setText(byId("study"), study);
   document.title = `${study} – ${word("operator")}`;
   const parts = [word("session_line", { participant, mode: wordOr(`mode_${mode}`, mode) })];
   if (isBlind) parts.push(word("blind"));
-  if (progress) parts.push(word("done", progress), timeIn(progress));
+  time.note(next.progress, isOver(next));
+  if (time.progress) parts.push(word("done", time.progress), time.text());
   setText(byId("session"), parts.join(" · "));
 }
 
@@ -29,8 +34,6 @@ function showForce(force) {
   setText(byId("force"), word(`force_${force}`));
   byId("force").dataset.force = force;
 }
-
-const isOver = ({ state: name }) => ["ended", "stopped"].includes(name);
 
 function showBadges(next) {
   const isPauseDue = next.is_paused && next.state !== "paused" && !isOver(next);

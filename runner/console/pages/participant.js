@@ -9,7 +9,7 @@ import { confidenceScreen } from "./screen_confidence.js";
 import { restScreen, textScreen } from "./screen_text.js";
 import { trialScreen } from "./screen_trial.js";
 import { View } from "./view.js";
-import { loadWords, setLanguage, timeIn, word } from "./words.js";
+import { loadWords, SessionTime, setLanguage, word } from "./words.js";
 
 const makers = {
   wait: textScreen, instructions: textScreen, message: textScreen, feedback: textScreen,
@@ -90,8 +90,10 @@ function showProgress(progress) {
   bar.value = progress.done;
   const words = progress.is_practice ? "progress_practice" : "progress";
   setText(byId("progress-text"), word(progress.is_open_ended ? `${words}_open` : words, progress));
-  setText(byId("time-text"), timeIn(progress));
+  time.note(progress, screen.kind === "ended");
+  setText(byId("time-text"), time.text());
 }
+const time = new SessionTime(() => showProgress(screen.progress));
 
 let settling = null;
 function settle() {

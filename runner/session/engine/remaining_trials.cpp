@@ -90,35 +90,43 @@ std::deque<PlannedTrial> waiting_trials(const protocols::Schedule& schedule,
   return waiting;
 }
 
-TrialProgress progress_at(const protocols::PlannedTrial& trial, const protocols::Schedule& schedule,
-                          const std::set<int>& done, const protocols::Protocol& protocol) {
-  const auto is_practice = [&](const protocols::PlannedTrial& of) {
-    return protocol.block(of.block).is_practice;
-  };
-  TrialProgress progress{0, 0, is_practice(trial)};
-  for (const protocols::PlannedTrial& other : schedule) {
-    const bool is_of_it = is_practice(other) == progress.is_practice;
-    progress.total += is_of_it ? 1 : 0;
-    progress.done += is_of_it && done.contains(other.number) ? 1 : 0;
-    progress.is_open_ended |= is_of_it && may_procedures_end_early(protocol.block(other.block));
+SessionProgress::SessionProgress(const protocols::Schedule& schedule, const std::set<int>& done,
+                                 const protocols::Protocol& protocol) {
+  for (const protocols::Block& block : protocol.blocks) {
+    kinds_[block.name] = {block.is_practice, protocols::may_end_early(block)};
+    Counts& counts = block.is_practice ? practice_ : counted_;
+    counts.is_open_ended |=
+        may_procedures_end_early(block) &&
+        std::ranges::find(schedule, block.name, &PlannedTrial::block) != schedule.end();
   }
-  return progress;
+  for (const PlannedTrial& trial : schedule) {
+    const Kind& kind = kinds_.at(trial.block);
+    ++(kind.is_practice ? practice_ : counted_).total;
+    waiting_that_may_end_early_ += kind.may_end_early ? 1 : 0;
+    if (done.contains(trial.number)) {
+      note_done(trial);
+    }
+  }
 }
 
-std::optional<double> time_left_s(const protocols::Schedule& schedule, const std::set<int>& done,
-                                  const protocols::Protocol& protocol, double presented_in_s,
-                                  int presented) {
+void SessionProgress::note_done(const PlannedTrial& trial) {
+  const Kind& kind = kinds_.at(trial.block);
+  ++(kind.is_practice ? practice_ : counted_).done;
+  waiting_that_may_end_early_ -= kind.may_end_early ? 1 : 0;
+}
+
+TrialProgress SessionProgress::before(const PlannedTrial& trial) const {
+  const bool is_practice = kinds_.at(trial.block).is_practice;
+  const Counts& counts = is_practice ? practice_ : counted_;
+  return {counts.done, counts.total, is_practice, counts.is_open_ended};
+}
+
+std::optional<double> SessionProgress::left_s(double presented_in_s, int presented) const {
   constexpr int fewest = 3;
-  const auto is_waiting = [&](const protocols::PlannedTrial& trial) {
-    return !done.contains(trial.number);
-  };
-  const bool may_end_early = std::ranges::any_of(schedule, [&](const auto& trial) {
-    return is_waiting(trial) && protocols::may_end_early(protocol.block(trial.block));
-  });
-  if (presented < fewest || may_end_early) {
+  if (presented < fewest || waiting_that_may_end_early_ > 0) {
     return std::nullopt;
   }
-  return presented_in_s / presented *
-         static_cast<double>(std::ranges::count_if(schedule, is_waiting));
+  const int waiting = practice_.total - practice_.done + counted_.total - counted_.done;
+  return presented_in_s / presented * waiting;
 }
 }  // namespace tapstudy::runner

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 #include <deque>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -40,13 +42,33 @@ std::deque<protocols::PlannedTrial> waiting_trials(const protocols::Schedule& sc
                                                    const std::set<int>& done,
                                                    const std::vector<int>& requeued);
 
-// Before this trial: counted among the practice, or among the trials that count, that it is one of.
-// `done` are the numbers of those that need not come again.
-TrialProgress progress_at(const protocols::PlannedTrial& trial, const protocols::Schedule& schedule,
-                          const std::set<int>& done, const protocols::Protocol& protocol);
-// How long the trials that are not done take, at the pace of those that a session has presented in
-// so many seconds. Unset before the third, and where procedures may need fewer.
-std::optional<double> time_left_s(const protocols::Schedule& schedule, const std::set<int>& done,
-                                  const protocols::Protocol& protocol, double presented_in_s,
-                                  int presented);
+// How far a participant is, kept as trials are done: it takes as long with few trials as with many.
+// done: the numbers of those that need not come again.
+class SessionProgress {
+ public:
+  SessionProgress(const protocols::Schedule& schedule, const std::set<int>& done,
+                  const protocols::Protocol& protocol);
+  // One of the schedule's that was not done before.
+  void note_done(const protocols::PlannedTrial& trial);
+  // Before this trial: counted among the practice, or among the trials that count, that it is of.
+  TrialProgress before(const protocols::PlannedTrial& trial) const;
+  // How long the trials that are not done take, at the pace of those that a session has presented
+  // in so many seconds. Unset before the third, and where procedures may need fewer.
+  std::optional<double> left_s(double presented_in_s, int presented) const;
+
+ private:
+  struct Counts {
+    int total{};
+    int done{};
+    bool is_open_ended{};
+  };
+  struct Kind {
+    bool is_practice{};
+    bool may_end_early{};
+  };
+  std::map<std::string, Kind> kinds_;  // by block
+  Counts practice_;
+  Counts counted_;
+  int waiting_that_may_end_early_{};
+};
 }  // namespace tapstudy::runner

@@ -86,8 +86,14 @@ void SessionStates::enter(SessionState state, std::optional<int> trial, std::str
     throw std::logic_error{
         fmt::format("a session that is {} cannot become {}", name(state_), name(state))};
   }
+  paused_s_ = now_s_() - unpaused_s();
+  entered_at_s_ = now_s_();
   state_ = state;
   note(trial, std::move(detail));
+}
+
+double SessionStates::unpaused_s() const {
+  return (state_ == SessionState::paused ? entered_at_s_ : now_s_()) - paused_s_;
 }
 
 std::vector<results::SessionEventRow> SessionStates::take_events() {

@@ -43,6 +43,8 @@ class SessionStates {
   void enter(SessionState state, std::optional<int> trial = {}, std::string detail = {});
   std::int64_t session_id() const { return session_id_; }
   double now_s() const { return now_s_(); }
+  // The same without the time in which it was paused: what says how long trials take.
+  double unpaused_s() const;
   SessionState state() const { return state_; }
   // The changes since the last call.
   std::vector<results::SessionEventRow> take_events();
@@ -54,6 +56,8 @@ class SessionStates {
   Now now_s_;
   Listener listener_;
   SessionState state_{SessionState::begun};
+  double paused_s_{0.0};  // in pauses that are over
+  double entered_at_s_{0.0};
   std::vector<results::SessionEventRow> events_;
 };
 }  // namespace tapstudy::runner

@@ -79,16 +79,21 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
     adaptive_.emplace(parts_.protocol, parts_.seed, schedule, as_given_);
   }
   std::deque<PlannedTrial> waiting = waiting_trials(schedule, done_trials, requeued_);
+  SessionProgress progress{schedule, done_trials, parts_.protocol};
+  const auto note_done = [&](const PlannedTrial& trial) {
+    done_trials.insert(trial.number);
+    progress.note_done(trial);
+  };
   while (!waiting.empty()) {
     stop_if_asked();
     const PlannedTrial trial = waiting.front();
     waiting.pop_front();
     if (!practice_.is_needed(trial, schedule) || adaptive_->is_over(trial)) {
-      done_trials.insert(trial.number);
+      note_done(trial);
       continue;
     }
     between_trials_.before(trial, schedule);
-    const Outcome outcome = run_until_it_counts(trial, {schedule, done_trials});
+    const Outcome outcome = run_until_it_counts(trial, {schedule, progress});
     if (outcome.is_requeued) {
       std::erase(requeued_, trial.number);
       requeued_.push_back(trial.number);
@@ -96,7 +101,7 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
       continue;
     }
     if (!outcome.interruption || outcome.interruption->is_answered) {
-      done_trials.insert(trial.number);
+      note_done(trial);
     }
     if (outcome.interruption) {
       return outcome.interruption;
@@ -107,10 +112,9 @@ std::optional<Interruption> TrialEngine::run_all(const protocols::Schedule& sche
 
 TrialPrompt TrialEngine::prompt_of(const PlannedTrial& trial, const Course& course) const {
   const protocols::Block& block = parts_.protocol.block(trial.block);
-  TrialProgress progress = progress_at(trial, course.schedule, course.done, parts_.protocol);
+  TrialProgress progress = course.progress.before(trial);
   progress.elapsed_s = parts_.states.now_s();
-  progress.left_s = time_left_s(course.schedule, course.done, parts_.protocol,
-                                progress.elapsed_s - first_trial_at_s_, trials_);
+  progress.left_s = course.progress.left_s(parts_.states.unpaused_s() - first_trial_at_s_, trials_);
   return {trial.number,
           course.schedule.back().number,
           progress,
@@ -264,7 +268,7 @@ void TrialEngine::note_answer(const PlannedTrial& trial, const TrialPrompt& prom
 
 TrialEngine::Outcome TrialEngine::run_trial(const PlannedTrial& planned, const Course& course) {
   const PlannedTrial trial = adaptive_->with_values(planned);
-  first_trial_at_s_ = trials_ == 0 ? parts_.states.now_s() : first_trial_at_s_;
+  first_trial_at_s_ = trials_ == 0 ? parts_.states.unpaused_s() : first_trial_at_s_;
   const TrialPrompt prompt = prompt_of(trial, course);
   const protocols::Block& block = parts_.protocol.block(trial.block);
   Presentation presentation = present({trial, prompt, attempts_[trial.number] + 1}, parts_);

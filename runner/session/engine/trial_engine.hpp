@@ -13,6 +13,7 @@
 #include "runner/session/engine/between_trials.hpp"
 #include "runner/session/engine/practice.hpp"
 #include "runner/session/engine/presentation.hpp"
+#include "runner/session/engine/remaining_trials.hpp"
 #include "runner/session/engine/session_states.hpp"
 #include "runner/session/engine/trial_record.hpp"
 #include "runner/session/participants/participant.hpp"
@@ -68,7 +69,7 @@ class TrialEngine {
                    const std::string& response);
   struct Course {
     const protocols::Schedule& schedule;
-    const std::set<int>& done;
+    const SessionProgress& progress;
   };
   Outcome run_trial(const protocols::PlannedTrial& planned, const Course& course);
   Outcome run_until_it_counts(const protocols::PlannedTrial& trial, const Course& course);
@@ -91,7 +92,7 @@ class TrialEngine {
   std::map<int, int> repeats_after_late_impacts_;
   std::int64_t ticks_{0};
   int trials_{0};
-  double first_trial_at_s_{0.0};
+  double first_trial_at_s_{0.0};  // without pauses
   bool has_warned_{false};
 };
 }  // namespace tapstudy::runner

@@ -465,3 +465,28 @@ TEST_CASE("posterior and next stimulus of QUEST+ are those of questplus",
     }
   }
 }
+
+// Who is always right has no threshold within the grid; who is known exactly has one inside it.
+TEST_CASE("a mode at the first or last value of its grid is one at its end, rates apart",
+          "[protocols][procedures]") {
+  const Settings settings = testing::procedure_of(psi);
+  const auto ends_after = [&](const auto& answer) {
+    const auto track = settings->start(1);
+    while (const auto values = track->next()) {
+      track->observe(*values, answer(values->front()));
+    }
+    std::map<std::string, bool> ends;
+    for (const auto& posterior : track->summary().parameters) {
+      ends[posterior.name] = protocols::is_at_end_of_grid(posterior, *settings);
+    }
+    return ends;
+  };
+  const auto always_right = ends_after([](double) { return std::size_t{1}; });
+  CHECK(always_right.at("threshold"));
+  CHECK_FALSE(always_right.at("guess"));
+  CHECK_FALSE(always_right.at("lapse"));
+  testing::KnownObserver observer{{core::PsychometricShape::logistic, 0.0, 1.5, 0.5, 0.02}, 5};
+  CHECK_FALSE(ends_after([&](double value) { return observer.answer(value); }).at("threshold"));
+  const Settings steps = testing::procedure_of(staircase);
+  CHECK_FALSE(protocols::is_at_end_of_grid({"threshold", 0.0, -2.0, 0.0, {}}, *steps));
+}

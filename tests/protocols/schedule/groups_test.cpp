@@ -119,6 +119,57 @@ TEST_CASE("orders of blocks and of stimuli are balanced within each group", "[pr
   }
 }
 
+TEST_CASE("a group with an order of its own does its blocks in it, the others as they are dealt",
+          "[protocols][groups]") {
+  const Names own_practice{"practice_a", "a", "practice_b", "b", "practice_c", "c"};
+  const protocols::Protocol protocol = testing::with_blocks(
+      own_practice,
+      "block_order: {order: williams}\n"
+      "groups:\n  - {name: fixed, block_order: [c, a, b]}\n  - {name: dealt}\n");
+  CHECK(protocols::balanced_block_orders(protocol, &protocol.group("fixed")) == 1);
+  CHECK(protocols::balanced_block_orders(protocol, &protocol.group("dealt")) == 6);
+  std::map<std::string, std::set<Names>> orders;
+  for (int i = 0; i < 24; ++i) {
+    orders[protocols::group_of(protocol, i)->name].insert(blocks_in(make_schedule(protocol, 1, i)));
+  }
+  CHECK(orders["fixed"] ==
+        std::set<Names>{{"practice_c", "c", "practice_a", "a", "practice_b", "b"}});
+  CHECK(orders["dealt"].size() == 6);
+}
+
+TEST_CASE("blocks that a group's own order does not name stay where they are",
+          "[protocols][groups]") {
+  const protocols::Protocol protocol = testing::with_blocks(
+      blocks, "groups:\n  - {name: own, block_order: [test, a]}\n  - {name: other}\n");
+  for (int i = 0; i < 4; ++i) {
+    const Names expected = protocols::group_of(protocol, i)->name == "own"
+                               ? Names{"practice", "test", "b", "c", "a"}
+                               : blocks;
+    CHECK(blocks_in(make_schedule(protocol, 3, i)) == expected);
+  }
+}
+
+TEST_CASE("a group is presented its own stimuli of a block, equally often, and no others",
+          "[protocols][groups]") {
+  const protocols::Protocol protocol = testing::with_blocks(
+      {"a", "test"},
+      "groups:\n  - {name: two, stimuli: {test: [acrylic_two, mdf_two]}}\n  - {name: all}\n");
+  for (int i = 0; i < 12; ++i) {
+    const auto schedule = make_schedule(protocol, 5, i);
+    const bool is_two = protocols::group_of(protocol, i)->name == "two";
+    std::map<std::string, int> counts;
+    for (const std::string& stimulus : stimuli_of("test", schedule)) {
+      ++counts[stimulus];
+    }
+    CHECK(counts == (is_two ? std::map<std::string, int>{{"acrylic_two", 1}, {"mdf_two", 1}}
+                            : std::map<std::string, int>{
+                                  {"acrylic_two", 1}, {"mdf_two", 1}, {"mdf_three", 1}}));
+    CHECK(stimuli_of("a", schedule).size() == 3);
+  }
+  const protocols::Block& test = protocol.block("test");
+  CHECK(protocols::answers_of(test, protocol).options.size() == 3);
+}
+
 TEST_CASE("without groups every participant does every block, in orders by the order index",
           "[protocols][groups]") {
   const protocols::Protocol protocol = testing::with_blocks(blocks, "");
@@ -163,4 +214,57 @@ TEST_CASE("groups that cannot be are refused at their place, with what is allowe
   refused("  []\n", "1", "must be two or more");
   refused("  - {name: x y}\n" + other, "1", "name");
   refused("  - {blocks: [a]}\n" + other, "1", "name");
+  refused("  - {name: x, block_order: [b, practice]}\n" + other, "1", "may move");
+  refused("  - {name: x, blocks: [a], block_order: [a, b]}\n" + other, "1",
+          "'b' is not a known block of the group");
+  refused("  - {name: x, block_order: [b]}\n" + other, "1", "names no two blocks");
+  refused("  - {name: x, stimuli: {c: [mdf_two]}}\n" + other, "1", "is no block that the group");
+  refused("  - {name: x, blocks: [a], stimuli: {b: [mdf_two, mdf_three]}}\n" + other, "1",
+          "(one of: a)");
+  refused("  - {name: x, stimuli: {b: [mdf_two, wood]}}\n" + other, "1",
+          "'wood' is not a known stimulus of the block");
+  refused("  - {name: x, stimuli: {b: [mdf_two]}}\n" + other, "1", "at least two stimuli");
+}
+
+TEST_CASE("what is stated for all groups and concerns none is refused", "[protocols][groups]") {
+  const auto refusal = [](const std::string& keys) {
+    try {
+      testing::with_blocks({"a", "b"}, keys);
+    } catch (const core::InvalidInput& error) {
+      return std::string{error.what()};
+    }
+    return std::string{"was read"};
+  };
+  const std::string fixed = "  - {name: x, block_order: [b, a]}\n";
+  CHECK_THAT(refusal("block_order: {order: williams}\ngroups:\n" + fixed +
+                     "  - {name: y, block_order: [a, b]}\n"),
+             Contains("block_order: is of no group"));
+  CHECK_THAT(refusal("block_order: {order: williams}\ngroups:\n" + fixed + "  - {name: y}\n"),
+             Contains("was read"));
+  CHECK_THAT(refusal("groups:\n  - {name: x, stimuli: {a: [mdf_two, mdf_three]}}\n"
+                     "  - {name: y, blocks: [b]}\n"),
+             Contains("'acrylic_two' of block 'a' is presented to none"));
+}
+
+TEST_CASE("shares of right answers of groups are compared where the same answers are right",
+          "[protocols][groups]") {
+  const std::string whole = testing::contents(testing::shipped("paper/discrimination.yaml"));
+  const auto read = [&](const std::string& own, const std::string& claim) {
+    const std::string text =
+        whole.substr(0, whole.find("\nblocks:")) +
+        "\nblocks:\n  - {name: test, task: identification, question: \"Which?\", response_factor: "
+        "material, stimuli: [mdf_two, mdf_three, acrylic_two, acrylic_three]}\n"
+        "groups:\n  - {name: x, stimuli: {test: [mdf_two, acrylic_two]}}\n"
+        "  - {name: y, stimuli: {test: " +
+        own + "}}\nhypotheses:\n  - {name: h, statement: S., block: test, claim: " + claim + "}\n";
+    protocols::parse_protocol(text, "study.yaml");
+  };
+  const std::string differ = "groups_differ, groups: [x, y]";
+  CHECK_NOTHROW(read("[mdf_three, acrylic_three]", differ));
+  CHECK_THROWS_WITH(read("[mdf_three, acrylic_two, acrylic_three]", differ),
+                    Contains("hypotheses[0].groups") && Contains("other right answers"));
+  CHECK_NOTHROW(read("[mdf_three, acrylic_two, acrylic_three]", "accuracy_above_chance"));
+  CHECK_THROWS_WITH(
+      read("[mdf_three, acrylic_three]", "interaction, factors: [material, structure]"),
+      Contains("is not presented all of its stimuli"));
 }

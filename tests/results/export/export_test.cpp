@@ -146,7 +146,7 @@ TEST_CASE("on a full disk an export leaves nothing behind", "[results][export]")
   setrlimit(RLIMIT_FSIZE, &lowered);
   const auto run = testing::tapstudy({"export", study, "--out", directory / "out", "--traces"});
   setrlimit(RLIMIT_FSIZE, &usual);
-  CHECK(run.exit_code != 0);
+  CHECK(run.exit_code == 5);
   CHECK_THAT(run.standard_error, Contains("is the disk full?"));
   CHECK(testing::entries(directory.path()) == before);
 }

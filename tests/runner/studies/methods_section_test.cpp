@@ -4,7 +4,9 @@
 #include <map>
 #include <set>
 
+#include "protocols/schedule/groups.hpp"
 #include "protocols/schedule/schedule.hpp"
+#include "runner/studies/study_summary.hpp"
 #include "support/blocks.hpp"
 #include "support/catch.hpp"
 using namespace tapstudy;
@@ -85,4 +87,62 @@ TEST_CASE("methods say of no participant that they did the blocks of another gro
   INFO(text);
   CHECK((text.find(", then 'two'") != std::string::npos) == !are_own);
   CHECK((text.find("Each group did its own of these blocks") != std::string::npos) == are_own);
+}
+
+namespace {
+const std::string own_orders =
+    "block_order: {order: williams}\n"
+    "groups:\n"
+    "  - {name: own, block_order: [b, test], stimuli: {test: [acrylic_two, mdf_two]}}\n"
+    "  - {name: other}\n";
+}  // namespace
+
+TEST_CASE("methods say which order and which stimuli a group had of its own", "[runner][report]") {
+  const protocols::Protocol protocol = testing::with_blocks({"test", "b"}, own_orders);
+  std::vector<results::SessionRow> sessions;
+  std::set<std::string> participants;
+  for (int order_index = 0; order_index < 4; ++order_index) {
+    results::SessionRow& session = sessions.emplace_back();
+    session.participant_id = "P" + std::to_string(order_index);
+    session.order_index = order_index;
+    session.group.emplace();
+    session.group->name = protocols::group_of(protocol, order_index)->name;
+    participants.insert(session.participant_id);
+  }
+  const std::string text =
+      runner::describe_procedure(protocol, sessions, participants,
+                                 {{"test", {.participants = participants, .answered = 10}},
+                                  {"b", {.participants = participants, .answered = 12}}})
+          .words;
+  INFO(text);
+  for (const char* const words :
+       {"'own' (n = 2) did 'test', 'b', in the order 'b', 'test', presented of 'test' "
+        "'acrylic_two', 'mdf_two'; 'other' (n = 2)",
+        "'test' (identification of 3 stimuli, of which groups were presented their own, 2 to 3 "
+        "trials",
+        "of groups without an order of their own"}) {
+    INFO(words);
+    CHECK(text.find(words) != std::string::npos);
+  }
+  // 2 × 2 and 2 × 3 trials are all that there are
+  CHECK(text.find("of 10 answers given") == std::string::npos);
+}
+
+TEST_CASE("the order of a block is drawn again from the stimuli of the participant's group",
+          "[runner][report]") {
+  const protocols::Protocol protocol = testing::with_blocks({"test", "b"}, own_orders);
+  const auto design = runner::design_of(protocol, results::Mode::simulated);
+  REQUIRE(design.blocks.front().redraw);
+  for (int i = 0; i < 8; ++i) {
+    std::multiset<std::string> planned;
+    for (const std::string& name :
+         testing::stimuli_of("test", protocols::make_schedule(protocol, 1, i))) {
+      planned.insert(name);
+    }
+    std::multiset<std::string> redrawn;
+    for (const int place : design.blocks.front().redraw({i, i}, 77)) {
+      redrawn.insert(design.blocks.front().stimuli.at(static_cast<std::size_t>(place)).name);
+    }
+    CHECK(redrawn == planned);
+  }
 }

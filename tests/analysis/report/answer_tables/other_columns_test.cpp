@@ -221,3 +221,40 @@ TEST_CASE("rows that a column calls excluded, or no trial that counts, are asked
   CHECK_THAT(outcome_of(text, keys()),
              Contains("column '" + name + "' says '" + cell + "': 12 of 72"));
 }
+
+TEST_CASE("answers of two tasks are one matrix only if that is asked for", "[analysis][counts]") {
+  const auto task = [](const Trial& trial) { return trial.number % 8 < 5 ? "tapping" : "rubbing"; };
+  for (const char* const name : {"task", "Task_name", "Aufgabe"}) {
+    INFO(name);
+    CHECK_THAT(outcome_of(table_with(name, task), keys()),
+               Contains("names 2 tasks (rubbing, tapping)") && Contains("--where '") &&
+                   Contains("=rubbing'") && Contains("--pool-tasks"));
+  }
+  AnswerReading reading = keys();
+  reading.pools_tasks = true;
+  CHECK(outcome_of(table_with("task", task), reading) == "accepted");
+  reading = keys();
+  reading.conditions = {{"task", "tapping", false}};
+  CHECK(outcome_of(table_with("task", task), reading) == "accepted");
+  CHECK(outcome_of(table_with("task", [](const Trial&) { return "tapping"; }), keys()) ==
+        "accepted");
+  // a column of another name says nothing of tasks
+  CHECK(outcome_of(table_with("hand", task), keys()) == "accepted");
+}
+
+TEST_CASE("tasks of different files are not one matrix either", "[analysis][counts]") {
+  const auto table = [](const char* task) {
+    std::istringstream stream{table_with("task", [task](const Trial&) { return task; })};
+    return read_csv(stream, task);
+  };
+  const auto read = [&](const char* first, const char* second) {
+    std::vector<NamedCsv> files;
+    files.push_back({first, table(first)});
+    files.push_back({second, table(second)});
+    AnswerReading reading = keys();
+    reading.pools_runs = true;
+    read_answers(std::move(files), reading);
+  };
+  CHECK_THROWS_WITH(read("tapping", "rubbing"), Contains("names 2 tasks"));
+  CHECK_NOTHROW(read("tapping", "tapping"));
+}

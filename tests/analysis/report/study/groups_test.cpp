@@ -134,6 +134,23 @@ TEST_CASE("a declared contrast of groups is a hypothesis of its block, and of no
   }
 }
 
+TEST_CASE("groups that were presented stimuli with other right answers are not compared",
+          "[analysis][report][groups]") {
+  Blocks blocks;
+  add(blocks, "test", {"share", false, shares});
+  add(blocks, "retest", {"share", false, shares});
+  const auto section = groups_section(
+      blocks, groups,
+      {{"test", "trained", "untrained", false}, {"retest", "trained", "untrained", true}});
+  REQUIRE(section);
+  CHECK(section->tables[0].rows.size() == 4);  // each mean is one of its own group
+  REQUIRE(section->tables[1].rows.size() == 1);
+  CHECK(section->tables[1].rows[0][1].text == "retest");
+  REQUIRE(section->remarks.size() == 3);
+  CHECK_THAT(section->remarks[1].words, Contains("their values are not compared"));
+  CHECK_THAT(section->remarks[2].words, Contains("the groups and of the stimuli together"));
+}
+
 TEST_CASE("without two groups in a block nothing is compared", "[analysis][report][groups]") {
   Blocks blocks;
   add(blocks, "training", {"share", false, {{"T1", 0.5}, {"T2", 0.5}}});

@@ -337,3 +337,16 @@ TEST_CASE("free text is in no format, and a mark that is no number is refused",
   answers[4].answer = "1.5";
   CHECK_THROWS_AS(json_of(answers), core::InvalidInput);
 }
+
+TEST_CASE("a report says of how many tracks an estimate lies at the end of its grid",
+          "[analysis][procedures]") {
+  std::vector<analysis::TrackResult> tracks{track("P1", 1.0, false), track("P2", 2.0, false)};
+  for (analysis::TrackResult& of : tracks) {
+    of.parameters = {{"threshold", 1.0, {0.5, 2.0}, 0.3}, {"slope", 5.0, {4.0, 5.0}, 0.2}};
+  }
+  CHECK(analysis::procedures_section(tracks).remarks.size() == 1);
+  tracks.back().parameters.back().is_at_end = true;
+  const auto remarks = analysis::procedures_section(tracks).remarks;
+  REQUIRE(remarks.size() == 2);
+  CHECK_THAT(remarks.back().words, Contains("grid: slope in 'block' of 1 of 2 tracks."));
+}

@@ -321,11 +321,36 @@ TEST_CASE("what is left takes as long a trial as what was presented, once that i
     protocol.blocks.emplace_back().name = name;
   }
   const protocols::Schedule schedule = two_blocks();
-  CHECK_FALSE(runner::time_left_s(schedule, {1, 2}, protocol, 20.0, 2));
-  CHECK(runner::time_left_s(schedule, {1, 2}, protocol, 30.0, 3) == 40.0);
+  using Progress = runner::SessionProgress;
+  CHECK_FALSE(Progress(schedule, {1, 2}, protocol).left_s(20.0, 2));
+  CHECK(Progress(schedule, {1, 2}, protocol).left_s(30.0, 3) == 40.0);
   protocol.blocks[1].criterion = protocols::PracticeCriterion{1, 1};
-  CHECK_FALSE(runner::time_left_s(schedule, {1, 2}, protocol, 30.0, 3));
-  CHECK(runner::time_left_s(schedule, {1, 2, 3, 4, 5, 6}, protocol, 30.0, 3) == 0.0);
+  CHECK_FALSE(Progress(schedule, {1, 2}, protocol).left_s(30.0, 3));
+  CHECK(Progress(schedule, {1, 2, 3, 4, 5, 6}, protocol).left_s(30.0, 3) == 0.0);
+}
+
+TEST_CASE("progress that is kept trial by trial is that counted anew", "[runner][session]") {
+  protocols::Protocol protocol;
+  for (const char* const name : {"first", "second"}) {
+    protocol.blocks.emplace_back().name = name;
+  }
+  protocol.blocks[0].is_practice = true;
+  protocol.blocks[0].criterion = protocols::PracticeCriterion{1, 1};
+  const protocols::Schedule schedule = two_blocks();
+  runner::SessionProgress kept{schedule, {}, protocol};
+  std::set<int> done;
+  for (const int number : {2, 1, 5, 4, 3, 6}) {
+    const auto trial = std::ranges::find(schedule, number, &protocols::PlannedTrial::number);
+    kept.note_done(*trial);
+    done.insert(number);
+    const runner::SessionProgress anew{schedule, done, protocol};
+    for (const protocols::PlannedTrial& other : schedule) {
+      CHECK(kept.before(other).done == anew.before(other).done);
+      CHECK(kept.before(other).total == (other.block == "first" ? 4 : 2));
+    }
+    CHECK(kept.left_s(30.0, 3) == anew.left_s(30.0, 3));
+    CHECK(kept.left_s(30.0, 3).has_value() == (done.contains(3) && done.contains(4)));
+  }
 }
 
 namespace {
@@ -640,6 +665,25 @@ TEST_CASE("a session's changes of state are kept in order with their times", "[r
   CHECK(events[2].t_s == 2.0);
   CHECK(events[2].session_id == 7);
   CHECK(states.take_events().empty());
+}
+
+TEST_CASE("how long trials take does not depend on how long the operator paused",
+          "[runner][session]") {
+  double now_s = 0.0;
+  SessionStates states{1, [&] { return now_s; }};
+  states.enter(SessionState::ready, 1);
+  now_s = 10.0;
+  CHECK(states.unpaused_s() == 10.0);
+  for (const double pause_s : {600.0, 60.0}) {
+    const double before_s = states.unpaused_s();
+    states.enter(SessionState::paused);
+    now_s += pause_s;
+    CHECK(states.unpaused_s() == before_s);
+    states.enter(SessionState::ready, 1);
+    now_s += 5.0;
+    CHECK(states.unpaused_s() == before_s + 5.0);
+  }
+  CHECK(states.now_s() == 680.0);
 }
 
 TEST_CASE("nothing is rendered before the participant is ready, nothing follows the end",

@@ -77,8 +77,7 @@ void check_block_order(MapReader& reader, const Protocol& protocol,
 }
 
 std::vector<std::string> read_own_order(MapReader& reader, const Protocol& protocol,
-                                        const Group& group) {
-  std::vector<Block> movable = blocks_of(protocol, group);
+                                        std::vector<Block> movable) {
   std::erase_if(movable, [](const Block& block) {
     return block.is_practice || block.is_fixed || !block.mixed_with.empty();
   });
@@ -172,19 +171,16 @@ Group read_group(MapReader& reader, const Protocol& protocol) {
   if (reader.problems_in_file() == earlier_problems && !group.blocks.empty() && !counts) {
     reader.reject("blocks", "are practice alone: nothing that the group does would be reported");
   }
-  if (reader.problems_in_file() != earlier_problems) {  // what they are of may be what is wrong
-    reader.leave("block_order");
-    reader.leave("stimuli");
-    return group;
-  }
-  group.block_order = read_own_order(reader, protocol, group);
+  // one mistake in the names of blocks is told once
+  const bool are_known = reader.problems_in_file() == earlier_problems;
+  const std::vector<Block> own = are_known ? blocks_of(protocol, group) : protocol.blocks;
+  group.block_order = read_own_order(reader, protocol, own);
   reader.each_list(
       {"stimuli",
        "by block: of the block's stimuli those that the group is presented, in this order where "
        "the block's is listed; answers stay those of the block; unset: all of them"},
-      Presence::optional, [&](MapReader& inner, const std::string& name) {
-        read_stimuli_of(inner, name, blocks_of(protocol, group), group);
-      });
+      Presence::optional,
+      [&](MapReader& inner, const std::string& name) { read_stimuli_of(inner, name, own, group); });
   return group;
 }
 

@@ -269,13 +269,15 @@ std::string described_order(const BlockOrderDealt& order, const protocols::Proto
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+bool have_own_orders(const protocols::Protocol& protocol) {
+  return std::ranges::any_of(protocol.groups,
+                             [](const auto& group) { return !group.block_order.empty(); });
+}
+
 // Who practises after counted trials learnt in trials that count.
 void print_orders_of_practice(const protocols::Protocol& protocol) {
-  const bool is_in_file_order = protocol.block_order.order == protocols::Order::listed &&
-                                std::ranges::all_of(protocol.groups, [](const auto& group) {
-                                  return group.block_order.empty();
-                                });
-  if (is_in_file_order || std::ranges::none_of(protocol.blocks, &protocols::Block::is_practice)) {
+  if ((protocol.block_order.order == protocols::Order::listed && !have_own_orders(protocol)) ||
+      std::ranges::none_of(protocol.blocks, &protocols::Block::is_practice)) {
     return;
   }
   constexpr std::size_t max_printed = 12;
@@ -333,9 +335,11 @@ void warn_of_block_order(const protocols::Protocol& protocol, int participants) 
       });
   if (are_confounded) {
     fmt::print(
-        "  note: blocks come in the file's order for every participant: what distinguishes two of "
+        "  note: blocks come in the file's order for every participant{}: what distinguishes two "
+        "of "
         "one task is confounded with practice and fatigue (block_order: {{order: williams}} "
-        "balances it)\n");
+        "balances it)\n",
+        have_own_orders(protocol) ? " of groups without an order of their own" : "");
   }
 }
 
@@ -376,6 +380,11 @@ void print_blocks(const protocols::Protocol& protocol, const BlockLengths& lengt
     const BlockLength& length = lengths.at(block.name);
     fmt::print("  {}, about {:.0f} s of tapping\n", heading(block, length),
                length.usual * simulated_trial_s(protocol, block));
+    if (std::ranges::any_of(protocol.groups, [&](const auto& group) {
+          return group.stimuli.contains(block.name);
+        })) {
+      fmt::print("    note: groups are presented their own of these stimuli, as listed below\n");
+    }
     if (block.presented_if) {
       fmt::print(
           "    note: only for those who answer {}; lengths, balance and power are those of all\n",
@@ -404,12 +413,12 @@ struct Session {
   double screens_s{};
 };
 Session session_of(const protocols::Group* group, const protocols::Protocol& protocol,
-                   const BlockLengths& lengths) {
+                   const BlockLengths& of_all) {
+  const BlockLengths lengths = lengths_for(group, protocol, of_all);
   Session session{.screens_s = seconds_of_screens(protocol, group, lengths)};
   for (const protocols::Block& block : protocol.blocks) {
     if (protocols::does(group, block)) {
-      const int trials = lengths.at(block.name).usual - protocols::planned_trials(block) +
-                         protocols::planned_trials(protocols::block_of(group, block));
+      const int trials = lengths.at(block.name).usual;
       const double seconds = trials * simulated_trial_s(protocol, block);
       session.trials += trials;
       session.tapped_s += seconds;

@@ -54,6 +54,16 @@ BlockLengths lengths_of(const protocols::Protocol& protocol) {
   return lengths;
 }
 
+BlockLengths lengths_for(const protocols::Group* group, const protocols::Protocol& protocol,
+                         BlockLengths lengths) {
+  for (const protocols::Block& block : protocol.blocks) {
+    if (group != nullptr && group->stimuli.contains(block.name)) {
+      lengths[block.name] = length_of(protocol, protocols::block_of(group, block));
+    }
+  }
+  return lengths;
+}
+
 std::string describe_length(const protocols::Block& block, const BlockLength& length) {
   const std::string limit = counted(static_cast<std::size_t>(length.limit), "trial");
   if (length.usual < length.limit) {
@@ -162,7 +172,8 @@ void add_trials(const protocols::Protocol& protocol, const protocols::Block& blo
   }
 }
 std::vector<ScreenGroup> screens_of(const protocols::Protocol& protocol,
-                                    const protocols::Group* group, const BlockLengths& lengths) {
+                                    const protocols::Group* group, const BlockLengths& of_all) {
+  const BlockLengths lengths = lengths_for(group, protocol, of_all);
   std::vector<ScreenGroup> screens;
   add_instructions(protocol.instructions, "the study", screens);
   add_forms(protocol, protocol.forms_before, screens);

@@ -14,6 +14,9 @@ using BlockLengths = std::map<std::string, BlockLength>;  // by the block's name
 
 // Blocks whose procedures may end early are as long as for simulated people, all others as planned.
 BlockLengths lengths_of(const protocols::Protocol& protocol);
+// Those of one of the group's, who is presented the group's stimuli.
+BlockLengths lengths_for(const protocols::Group* group, const protocols::Protocol& protocol,
+                         BlockLengths lengths);
 // "8 trials", "at most 20 trials", "about 38 trials (simulated; up to 52 for 19 of 20 people, at
 // most 1000)"
 std::string describe_length(const protocols::Block& block, const BlockLength& length);

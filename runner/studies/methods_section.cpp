@@ -193,8 +193,11 @@ CitingText describe_sequence(const Protocol& protocol, const std::string& who,
   const bool have_own_orders = std::ranges::any_of(groups, [](const GroupMembers& members) {
     return members.group != nullptr && !members.group->block_order.empty();
   });
-  const CitingText done = have_own_blocks(groups, protocol)
-                              ? citing("Each group did its own of these blocks, in this order: {}",
+  const bool differ = have_own_blocks(groups, protocol);
+  const CitingText done = differ || have_own_orders
+                              ? citing("Each group did {}these blocks, in this order{}: {}",
+                                       differ ? "its own of " : "",
+                                       have_own_orders ? " where it has none of its own" : "",
                                        core::joined(blocks, "; "))
                               : citing("{} did {}", who, core::joined(blocks, ", then "));
   if (order.order == protocols::Order::listed) {

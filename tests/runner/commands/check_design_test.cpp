@@ -46,3 +46,19 @@ TEST_CASE("a language is complete only where no text is given once for all",
   // title, question and four labels
   CHECK_THAT(checked(text), Contains("  de: all but 6 texts given once for all languages"));
 }
+
+TEST_CASE("check says which order and stimuli a group has of its own, and counts its trials",
+          "[end_to_end][check]") {
+  const std::string said = checked(testing::text_with_blocks(
+      {"practice", "a", "b"},
+      "groups:\n  - {name: own, block_order: [b, a], stimuli: {b: [mdf_two, mdf_three]}}\n"
+      "  - {name: other}\n"));
+  INFO(said);
+  CHECK_THAT(said, Contains("order of blocks: practice (practice), b, a\n") &&
+                       Contains("order of blocks: practice (practice), a, b\n"));
+  CHECK_THAT(said,
+             Contains("group own: practice, a, b; in the order b, a; of b: mdf_two, mdf_three; "
+                      "8 trials; ") &&
+                 Contains("group other: practice, a, b; 9 trials; "));
+  CHECK_THAT(said, Contains("2  b: 2 trials\n") && Contains("3  b: 3 trials\n"));
+}

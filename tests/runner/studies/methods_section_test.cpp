@@ -120,6 +120,7 @@ TEST_CASE("methods say which order and which stimuli a group had of its own", "[
         "'acrylic_two', 'mdf_two'; 'other' (n = 2)",
         "'test' (identification of 3 stimuli, of which groups were presented their own, 2 to 3 "
         "trials",
+        "Each group did these blocks, in this order where it has none of its own: 'test'",
         "of groups without an order of their own"}) {
     INFO(words);
     CHECK(text.find(words) != std::string::npos);

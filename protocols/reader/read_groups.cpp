@@ -135,6 +135,10 @@ void read_stimuli_of(MapReader& inner, const std::string& name, const std::vecto
           "identification)");
       return;
     }
+    if (group.stimuli.contains(block.name)) {
+      inner.reject(name, fmt::format("is block '{}', whose stimuli are given already", block.name));
+      return;
+    }
     const std::size_t earlier_problems = inner.problems_in_file();
     group.stimuli[block.name] = inner.words(Key{name}, "stimulus of the block", block.stimuli);
     if (inner.problems_in_file() != earlier_problems) {

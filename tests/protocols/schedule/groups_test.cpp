@@ -268,3 +268,30 @@ TEST_CASE("shares of right answers of groups are compared where the same answers
       read("[mdf_three, acrylic_three]", "interaction, factors: [material, structure]"),
       Contains("is not presented all of its stimuli"));
 }
+
+TEST_CASE("a group has stimuli of its own only of a block where others need not be compared",
+          "[protocols][groups]") {
+  const auto refusal = [](const std::string& keys) {
+    const std::string whole = testing::contents(testing::shipped("paper/discrimination.yaml"));
+    try {
+      protocols::parse_protocol(
+          whole.substr(0, whole.find("\nblocks:")) +
+              "\nblocks:\n  - {name: how, task: rating, question: \"How?\", low: a, high: b, "
+              "stimuli: [mdf_two, acrylic_two]}\n"
+              "  - {name: which, task: identification, question: \"Which?\", "
+              "stimuli: [mdf_two, acrylic_two]}\n" +
+              keys,
+          "study.yaml");
+    } catch (const core::InvalidInput& error) {
+      return std::string{error.what()};
+    }
+    return std::string{"was read"};
+  };
+  CHECK_THAT(refusal("groups: [{name: x, stimuli: {how: [mdf_two]}}, {name: y}]\n"),
+             Contains("groups[0].stimuli.how: its stimuli are compared"));
+  CHECK(refusal("groups: [{name: x, stimuli: {which: [mdf_two]}}, {name: y}]\n") == "was read");
+  CHECK_THAT(refusal("sessions: [{name: d1, blocks: [how, which]}, {name: d2, blocks: [which]}]\n"
+                     "groups: [{name: x, stimuli: {which: [mdf_two], which.d2: [acrylic_two]}}, "
+                     "{name: y}]\n"),
+             Contains("is block 'which.d2', whose stimuli are given already"));
+}

@@ -676,6 +676,7 @@ TEST_CASE("how long trials take does not depend on how long the operator paused"
   CHECK(states.unpaused_s() == 10.0);
   for (const double pause_s : {600.0, 60.0}) {
     const double before_s = states.unpaused_s();
+    states.enter(SessionState::exploring, 1);
     states.enter(SessionState::paused);
     now_s += pause_s;
     CHECK(states.unpaused_s() == before_s);

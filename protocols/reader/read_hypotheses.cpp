@@ -255,6 +255,23 @@ void check_measures(MapReader& reader, const Protocol& protocol, const Hypothesi
   }
 }
 
+// No threshold is estimated beyond the levels that its procedures may present.
+void check_level(MapReader& reader, const Hypothesis& hypothesis, const Comparison& compared) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = 0.0;
+  for (const auto& track : compared.tracks) {
+    const auto [least, greatest] = track->ranges().front();
+    low = std::min(low, least);
+    high = std::max(high, greatest);
+  }
+  if (hypothesis.claim == Claim::threshold_below && low < high &&
+      (hypothesis.below <= low || hypothesis.below >= high)) {
+    reader.reject("below", fmt::format("{} is not between the levels that the block presents, {} "
+                                       "to {}: no threshold is estimated beyond them",
+                                       hypothesis.below, low, high));
+  }
+}
+
 // Of groups one block is compared, else two.
 void check_has_values(MapReader& reader, const Protocol& protocol, const Hypothesis& hypothesis,
                       const Block& block) {
@@ -277,6 +294,7 @@ void check_fits_task(MapReader& reader, const Protocol& protocol, const Hypothes
       reader.reject("block", "has no threshold: its procedures find none");
     } else {
       check_measures(reader, protocol, hypothesis, block);
+      check_level(reader, hypothesis, *block.comparison);
     }
     return;
   }
@@ -298,10 +316,10 @@ void check_fits_task(MapReader& reader, const Protocol& protocol, const Hypothes
   }
 }
 
-void read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
-                     Protocol& protocol) {
+Hypothesis read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
+                           const Protocol& protocol) {
   Hypothesis hypothesis;
-  hypothesis.name = reader.name({"name", "short name of the hypothesis"});
+  hypothesis.name = reader.name({"name", "unique among the hypotheses"});
   hypothesis.statement = reader.text({"statement", "the hypothesis in words, for reports"});
   hypothesis.block = reader.word({"block", "name of a block"}, "block", blocks);
   hypothesis.claim = reader.one_of<Claim>(
@@ -347,15 +365,23 @@ void read_hypothesis(MapReader& reader, const std::vector<std::string>& blocks,
     check_fits_task(reader, protocol, hypothesis, *block);
     check_own_stimuli(reader, protocol, hypothesis, *block);
   }
-  protocol.hypotheses.push_back(std::move(hypothesis));
+  return hypothesis;
 }
 }  // namespace
 
 void read_hypotheses(MapReader& top, Protocol& protocol) {
   std::vector<std::string> blocks;
   std::ranges::transform(protocol.blocks, std::back_inserter(blocks), &Block::name);
-  top.list({"hypotheses", "declared before the study; reports test these as planned"},
-           MapReader::Presence::optional,
-           [&](MapReader& reader) { read_hypothesis(reader, blocks, protocol); });
+  top.list(
+      {"hypotheses", "declared before the study; reports test these as planned"},
+      MapReader::Presence::optional, [&](MapReader& reader) {
+        Hypothesis hypothesis = read_hypothesis(reader, blocks, protocol);
+        const bool is_taken = std::ranges::find(protocol.hypotheses, hypothesis.name,
+                                                &Hypothesis::name) != protocol.hypotheses.end();
+        if (is_taken && !hypothesis.name.empty()) {
+          reader.reject("name", fmt::format("'{}' is the name of an earlier one", hypothesis.name));
+        }
+        protocol.hypotheses.push_back(std::move(hypothesis));
+      });
 }
 }  // namespace tapstudy::protocols

@@ -176,7 +176,6 @@ bool is_skin(const TriangleSurface& wrap, double offset_m) {
 // In place of what does not pass; in one piece, if that is asked for.
 void wrap(const TriangleSurface& surface, const RepairRequest& request, SurfaceRepair& repair) {
   const double wrap_m = request.wrap_m.value();
-  repair.holes = {};
   repair.wrap_offset_m = wrap_offset_share * wrap_m;
   repair.surface = wrapped(surface, wrap_m, *repair.wrap_offset_m);
   if (is_skin(repair.surface, *repair.wrap_offset_m)) {
@@ -226,7 +225,9 @@ void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceR
     refuse(*refusal, repair, hole_m, request, advised_wrap_m(joined));
   }
   const double longest_m = repair.holes.longest_m;
-  wrap(mended_surface.pieces_dropped > 0 ? mended_surface.surface : joined, request, repair);
+  const bool is_mended = mended_surface.pieces_dropped > 0;
+  repair.holes = is_mended ? repair.holes : Holes{};
+  wrap(is_mended ? mended_surface.surface : joined, request, repair);
   if (longest_m > hole_m) {
     repair.entered = entered_hole(joined, request, longest_m, repair.surface);
   }
@@ -353,6 +354,12 @@ std::vector<std::string> describe_changes(const SurfaceRepair& repair,
         "wrap is right for an open sheet)",
         repair.entered->around_m, request.wrap_m.value(), repair.entered->filled_m3,
         filling(*request.terms, repair.entered->around_m)));
+  } else if (repair.wrap_offset_m && is_skin(repair.surface, *repair.wrap_offset_m)) {
+    lines.push_back(fmt::format(
+        "warning: the result is a skin about {:.2g} m thick along the triangles, with nothing "
+        "inside: right for an open sheet; where a solid body was meant, its gaps are wider than "
+        "what the wrap bridges (try a larger {})",
+        2.0 * core::volume_m3(repair.surface) / area_m2(repair.surface), request.terms->wrap));
   }
   lines.push_back(fmt::format("triangles: {} kept, {} turned, {} dropped, {} added", repair.kept,
                               repair.turned, repair.dropped, repair.added));

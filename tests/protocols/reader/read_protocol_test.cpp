@@ -342,6 +342,24 @@ TEST_CASE("an interaction and an equivalence are refused where nothing could be 
              Contains("hypotheses[0].factors: the block's stimuli are not all combinations"));
 }
 
+TEST_CASE("a hypothesis about a level beyond those presented, or of an earlier's name, is refused",
+          "[protocols]") {
+  const auto with = [](const std::string& names, double below) {
+    std::string text = testing::contents(testing::shipped("examples/stiffness_jnd.yaml"));
+    text += "hypotheses:\n";
+    for (const char name : names) {
+      text += fmt::format(
+          "  - {{name: {}, statement: S., block: stiffness, claim: threshold_below, below: {}}}\n",
+          name, below);
+    }
+    return refusal(text);
+  };
+  CHECK(with("ab", 0.5) == "accepted");
+  CHECK_THAT(with("aba", 0.5), Contains("hypotheses[2].name: 'a' is the name of an earlier one"));
+  CHECK_THAT(with("a", 3.5), Contains("hypotheses[0].below: 3.5 is not between the levels") &&
+                                 Contains("0.05 to 3"));
+}
+
 TEST_CASE("a coupled finger without a mass, or not held to the hand, is one error at its line",
           "[protocols][coupled]") {
   const std::string coupled =

@@ -198,6 +198,31 @@ TEST_CASE("a wrap that goes inside by a hole is told, with the volume of what fi
   CHECK_THAT(told(), !Contains("warning") && Contains("volume: 6e-06 m³"));
 }
 
+TEST_CASE("a wrap that makes a skin of a body, whose gaps it does not bridge, says so",
+          "[protocols][surface][repair]") {
+  const core::TriangleSurface open = without_triangles(frame(), 2);
+  const auto told = [&](double wrap_m) {
+    const protocols::RepairRequest request{.wrap_m = wrap_m};
+    return fmt::format(
+        "{}", fmt::join(describe_changes(protocols::repair_surface(open, request), request), "\n"));
+  };
+  CHECK_THAT(told(0.001),
+             Contains("warning: the result is a skin about") && Contains("try a larger --wrap"));
+  CHECK_THAT(told(0.02), !Contains("skin"));
+}
+
+TEST_CASE("holes that were filled before a wrap are counted", "[protocols][surface][repair]") {
+  const core::TriangleSurface crossing =
+      testing::joined_surfaces(without_triangles(cube_at(0.0, 0.01), 1), cube_at(0.005, 0.01));
+  const core::TriangleSurface apart =
+      as_it_is_read(testing::joined_surfaces(crossing, cube_at(0.1, 0.002)));
+  const protocols::SurfaceRepair repair =
+      protocols::repair_surface(apart, {.is_largest_piece_only = true, .wrap_m = 0.001});
+  CHECK(repair.wrap_offset_m);
+  CHECK(repair.pieces_dropped == 1);
+  CHECK(repair.holes.filled == 1);
+}
+
 TEST_CASE("holes that touch each other in one corner are not filled but refused",
           "[protocols][surface][repair]") {
   const core::TriangleSurface open = without_triangles(frame(), 2);

@@ -327,6 +327,12 @@ void MapReader::reject_unknown(const YAML::Node& node, const std::string& key) {
     return;
   }
   std::vector<std::string> allowed = known_;
+  if (std::ranges::find(looked_for_, key) != looked_for_.end()) {
+    reject_at(node, path_of(key),
+              fmt::format("is not read beside the other keys given (allowed with them: {})",
+                          fmt::join(allowed, ", ")));
+    return;
+  }
   std::ranges::copy_if(looked_for_, std::back_inserter(allowed), [&](const std::string& other) {
     return std::ranges::find(allowed, other) == allowed.end();
   });

@@ -114,8 +114,8 @@ class BlockSummary {
   void write_details_html(std::ostream& out) const;
   // Links to the parts of the last; empty: there are none.
   std::string details_links() const;
-  // {"block", "task", what `values` holds, TABLE: [{key: value}], "remarks": [sentence],
-  // "hypotheses"}
+  // {"block", "task", "main_results", what `values` holds, TABLE: [{key: value}],
+  // "remarks": [sentence], "hypotheses"}
   nlohmann::ordered_json as_json() const;
   // The publications that the page cites here.
   std::set<core::Source> sources() const;

@@ -3,6 +3,7 @@
 
 #include "analysis/report/document/formats.hpp"
 #include "analysis/report/document/sections.hpp"
+#include "analysis/report/document/wording.hpp"
 namespace tapstudy::analysis {
 using Json = nlohmann::ordered_json;
 
@@ -71,8 +72,24 @@ nlohmann::ordered_json table_json(const ReportTable& table) {
   return rows;
 }
 
+namespace {
+Json main_results_json(const BlockSummary& block) {
+  const ToJson value;
+  Json list = Json::array();
+  for (const MainResult& result : block.main_results) {
+    list.push_back({{"name", result.name},
+                    {"estimate", value(result.estimate)},
+                    {"low", result.range ? value(result.range->low) : Json(nullptr)},
+                    {"high", result.range ? value(result.range->high) : Json(nullptr)},
+                    {"participants", result.people ? Json(*result.people) : Json(nullptr)},
+                    {"in_words", in_words(result, block.number_who_answered())}});
+  }
+  return list;
+}
+}  // namespace
+
 nlohmann::ordered_json BlockSummary::as_json() const {
-  Json json{{"block", block}, {"task", task}};
+  Json json{{"block", block}, {"task", task}, {"main_results", main_results_json(*this)}};
   if (values) {
     json.update(*values);
   }

@@ -332,6 +332,9 @@ TEST_CASE("an interaction and an equivalence are refused where nothing could be 
              Contains("hypotheses[0].to: is the stimulus itself"));
   CHECK_THAT(with_claim("threshold_below\n    below: 0.1"),
              Contains("hypotheses[0].block: has no threshold"));
+  CHECK_THAT(with_claim("equivalent\n    to_block: other\n    to: mdf_two\n    within: 0.1"),
+             Contains("hypotheses[0].to: is not read beside the other keys given") &&
+                 !Contains("did you mean"));
   CHECK_THAT(with_claim("equivalent\n    to_block: nowhere\n    within: 0.1"),
              Contains("hypotheses[0].to_block: 'nowhere'"));
   const std::string block = text.substr(text.find("stimuli: [acrylic_two"));

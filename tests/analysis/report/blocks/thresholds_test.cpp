@@ -279,6 +279,11 @@ TEST_CASE("where somebody has no threshold the block's result is of the fit of a
   CHECK(page.find("one fit of all of them") < page.find("with a threshold alone, which biases it"));
   CHECK_THAT(in_words(whole->main_results.at(0), whole->number_who_answered()),
              Contains(", of 4 participants, 1 of them without a threshold of their own"));
+  const auto told = formats.json["main_results"][0];  // to programs, too
+  CHECK(told["estimate"] == population["threshold"]);
+  CHECK(told["low"] == population["threshold_low"]);
+  CHECK_THAT(told["in_words"].get<std::string>(),
+             Contains(", of 4 participants, 1 of them without a threshold of their own"));
   const Chart& overview = whole->results().charts.at(0);
   CHECK(overview.name == "thresholds");
   CHECK(overview.bars.size() == 5);    // the fourth participant's alone, and the block's

@@ -125,6 +125,26 @@ TEST_CASE("a class that all participants name too often is found over participan
   CHECK(named[0]["p"].get<double>() < 0.05);
 }
 
+TEST_CASE("of two classes the bias to name one is the other's, and one test",
+          "[analysis][identification]") {
+  BlockDesign design = four_plates();
+  design.responses = {{"acrylic", "acrylic", {}}, {"mdf", "mdf", {}}};
+  const auto material = [](const std::string& plate) { return plate.substr(0, plate.find('_')); };
+  for (Item& stimulus : design.stimuli) {
+    stimulus.right = material(stimulus.name);
+  }
+  auto answers = answers_of(four_plates(), 6, 4, 1.0, 3);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    answers[i].response = i % 5 == 0 ? "acrylic" : material(answers[i].stimulus);
+    answers[i].is_correct = answers[i].response == material(answers[i].stimulus);
+  }
+  const auto named = reported(statistic, design, answers).json["naming"];
+  REQUIRE(named.size() == 2);
+  CHECK(named[0]["p"] == named[1]["p"]);
+  CHECK(named[0]["p_holm"] == named[0]["p"]);
+  CHECK(named[0]["difference"].get<double>() == -named[1]["difference"].get<double>());
+}
+
 TEST_CASE("four stimuli with two answers transfer one bit at most", "[analysis][identification]") {
   BlockDesign design = four_plates();
   design.responses = {{"acrylic", "acrylic", {}}, {"mdf", "mdf", {}}};

@@ -145,6 +145,15 @@ TEST_CASE("a simulated study has what an actuator would have been given, if its 
   REQUIRE(simulated.exit_code == 0);
   CHECK(sql(directory, "SELECT count(*) FROM actuator") == (is_stored ? "8\n" : "0\n"));
   CHECK(testing::tapstudy({"verify", directory / "the_study"}).exit_code == 0);
+  REQUIRE(testing::tapstudy({"export", directory / "the_study", "--format", "hdf5", "--out",
+                             directory / "out.h5"})
+              .exit_code == 0);
+  const auto read = testing::run_program({"/usr/bin/python3",
+                                          testing::source("tests/results/export/hdf5_reader.py"),
+                                          directory / "the_study", directory / "out.h5"});
+  INFO(read.standard_error);
+  CHECK_THAT(read.standard_output, Contains(is_stored ? "8 trials of actuators" : "0 trials of"));
+  CHECK(read.exit_code == 0);
   const auto refused =
       testing::tapstudy({"simulate", study, "--participants", "1", "--rig",
                          testing::shipped("rigs/remote.yaml"), "--out", directory / "another"});

@@ -199,7 +199,9 @@ void run_check(const CheckOptions& options) {
   for (const std::string& language : protocols::languages_of(protocol.translations)) {
     protocols::read_protocol(options.protocol, language);  // what only its sessions would meet
   }
-  print_design(protocol, participants);
+  const core::ActuatorOutput actuator =
+      (rig ? rig->actuator : std::nullopt).value_or(core::ActuatorOutput{});
+  print_design(protocol, participants, actuator.rate_hz);
   ModelLibrary models;
   print_models(protocol, models);
   print_divided_modes(protocol, models);

@@ -449,8 +449,14 @@ std::string described_group(const protocols::Group& group, const Session& sessio
                      participants);
 }
 
+double stored_bytes_per_s(const protocols::Protocol& protocol, double actuator_rate_hz) {
+  const bool has_samples = protocol.rendering.crossover && protocol.stores_actuator;
+  return results::usual_bytes_per_tick * protocol.rate_hz +
+         (has_samples ? results::usual_bytes_per_actuator_sample * actuator_rate_hz : 0.0);
+}
+
 void print_sessions(const protocols::Protocol& protocol, const BlockLengths& lengths,
-                    int participants) {
+                    int participants, double bytes_per_s) {
   fmt::print("\n");
   double recorded_s = 0.0;
   for (const protocols::Group* const group : protocols::groups_of(protocol)) {
@@ -470,7 +476,7 @@ void print_sessions(const protocols::Protocol& protocol, const BlockLengths& len
                groups);
   }
   fmt::print("  about {:.0f} MB of disk for all, if they tap no longer than simulated ones\n",
-             1e-6 * results::usual_bytes_per_tick * recorded_s * protocol.rate_hz);
+             1e-6 * bytes_per_s * recorded_s);
 }
 
 void print_planned_sessions(const protocols::Protocol& protocol) {
@@ -501,14 +507,14 @@ void print_languages(const protocols::Protocol& protocol) {
 }
 }  // namespace
 
-void print_design(const protocols::Protocol& protocol, int participants) {
+void print_design(const protocols::Protocol& protocol, int participants, double actuator_rate_hz) {
   if (protocol.blocks.empty()) {
     fmt::print("{}\n\n  no blocks, so no session: for tap, modes and trade\n", protocol.title);
     return;
   }
   const BlockLengths lengths = lengths_of(protocol);
   print_blocks(protocol, lengths, participants);
-  print_sessions(protocol, lengths, participants);
+  print_sessions(protocol, lengths, participants, stored_bytes_per_s(protocol, actuator_rate_hz));
   print_planned_sessions(protocol);
   warn_of_block_order(protocol, participants);
   if (protocol.masking) {

@@ -12,12 +12,21 @@ using namespace nlohmann::literals;
 
 TEST_CASE("a simulated study takes the disk that check says it will", "[end_to_end]") {
   const testing::TempDirectory directory;
-  const std::string protocol = testing::shipped("paper/discrimination.yaml");
-  const auto check = testing::tapstudy({"check", protocol, "--participants", "6"});
+  const bool has_actuator = GENERATE(false, true);
+  const std::string protocol = directory / "study.yaml";
+  const std::string rig = directory / "rig.yaml";
+  const std::string shipped = testing::contents(testing::shipped("paper/discrimination.yaml"));
+  testing::write(protocol, has_actuator ? testing::replaced(shipped, "band_limit_hz: 300",
+                                                            "band_limit_hz: 600\n"
+                                                            "  crossover_hz: [180, 200]")
+                                        : shipped);
+  testing::write(rig, testing::contents(testing::shipped("rigs/simulated_hand.yaml")) +
+                          (has_actuator ? "\nactuator: {full_scale_n: 20}\n" : ""));
+  const auto check = testing::tapstudy({"check", protocol, "--participants", "6", "--rig", rig});
   std::smatch said;
   REQUIRE(std::regex_search(check.standard_output, said, std::regex{"about ([0-9.]+) MB of disk"}));
-  REQUIRE(testing::tapstudy({"simulate", protocol, "--participants", "6", "--seed", "1", "--out",
-                             directory / "s"})
+  REQUIRE(testing::tapstudy({"simulate", protocol, "--participants", "6", "--seed", "1", "--rig",
+                             rig, "--out", directory / "s"})
               .exit_code == 0);
   const auto bytes = static_cast<double>(std::filesystem::file_size(directory / "s/study.db"));
   CHECK(1e-6 * bytes == Approx(std::stod(said[1])).epsilon(0.2));

@@ -2,7 +2,6 @@
 
 #include <csv.h>
 #include <fmt/format.h>
-#include <utf8cpp/utf8.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "analysis/statistics/file_kinds.hpp"
+#include "analysis/statistics/text_encoding.hpp"
 #include "core/error.hpp"
 #include "core/text/plain_text.hpp"
 #include "core/text/spreadsheet_cell.hpp"
@@ -82,7 +82,7 @@ class CsvReader {
 
  private:
   void check_characters(std::string_view line) const {
-    if (!utf8::is_valid(line.begin(), line.end())) {
+    if (!is_utf8(line)) {
       throw core::InvalidInput{fmt::format(
           "{}:{}: is not UTF-8 text (save it as UTF-8, as spreadsheets do by 'CSV UTF-8')", file_,
           line_)};

@@ -345,8 +345,8 @@ TEST_CASE("a figure that does not fit on the disk is an error and leaves nothing
       "trap '' XFSZ; ulimit -f 8; exec \"$0\" modes \"$1\" --stimulus mdf_two --figure \"$2\"";
   const auto run = testing::run_program({"/bin/sh", "-c", command, testing::tapstudy_program(),
                                          paper("discrimination.yaml"), figure});
-  CHECK(run.exit_code == 2);
-  CHECK_THAT(run.standard_error, Contains("disk full"));
+  CHECK(run.exit_code == 5);
+  CHECK_THAT(run.standard_error, Contains("is the disk full?"));
   CHECK_FALSE(std::filesystem::exists(figure));
 }
 

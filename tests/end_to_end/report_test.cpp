@@ -102,7 +102,7 @@ TEST_CASE("the methods of a report say what the protocol asked for and what it r
                             "300 Hz"));
   CHECK_THAT(text, Contains("(identification of 4 stimuli, 8 trials, in random order)"));
   CHECK_THAT(text, Contains("An answer required at least 1 contact. "));
-  CHECK_THAT(text, Contains("screen showed what was presented"));
+  CHECK_THAT(text, Contains("page, where it was open, showed what was presented"));
   CHECK_THAT(text, !Contains("Masking"));
   const std::string masked = methods_of(plain +
                                         "\nmasking: {kind: pink, level_db_fs: -24}\n"
@@ -110,7 +110,7 @@ TEST_CASE("the methods of a report say what the protocol asked for and what it r
   CHECK_THAT(masked, Contains("Masking: the protocol asks for pink noise at -24 dB FS") &&
                          Contains("none was played"));
   CHECK_THAT(testing::contents(latest + "_report/masking.csv"), Contains("P01,0,8,"));
-  CHECK_THAT(masked, Contains("screen did not show what was presented"));
+  CHECK_THAT(masked, Contains("page, where it was open, did not show what was presented"));
   CHECK_THAT(masked, !Contains("letters"));
 }
 

@@ -155,7 +155,7 @@ std::vector<std::size_t> columns_of_values(const Table& table,
 // "acc, force"; without headers "2 to 4".
 std::string names_of(const std::vector<std::size_t>& columns, const Table& table) {
   if (columns.empty()) {
-    return "none";
+    return "no column";
   }
   if (!table.has_headers()) {
     return fmt::format("{} to {}", columns.front() + 1, columns.back() + 1);

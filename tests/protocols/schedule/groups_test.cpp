@@ -279,7 +279,8 @@ TEST_CASE("a group has stimuli of its own only of a block where others need not 
               "\nblocks:\n  - {name: how, task: rating, question: \"How?\", low: a, high: b, "
               "stimuli: [mdf_two, acrylic_two]}\n"
               "  - {name: which, task: identification, question: \"Which?\", "
-              "stimuli: [mdf_two, acrylic_two]}\n" +
+              "stimuli: [mdf_two, acrylic_two]}\n"
+              "simulation: {observer: {reference: mdf_two}}\n" +
               keys,
           "study.yaml");
     } catch (const core::InvalidInput& error) {

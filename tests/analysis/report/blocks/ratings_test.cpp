@@ -125,7 +125,7 @@ TEST_CASE("what all rate alike is a result as any other, without an interval",
   const auto summary = find_statistic(statistic).summarise(design_of(), {answers, {}});
   REQUIRE(summary->main_results.size() == names.size());
   CHECK(in_words(summary->main_results[0], 6) ==
-        "mean of participants' median ratings: steel 7 for all, of 6");
+        "mean of participants' median ratings: steel 7 for all, of 6 participants");
   CHECK(summary->main_results[1].range);
 }
 

@@ -39,14 +39,15 @@ struct Channel {
   std::size_t channel{};
 };
 
-double time_unit_s(const ArrayFile& file, const NamedArray& array) {
-  return array.is_vector() ? seconds_per_unit(own_name(file, array)) : 0.0;
+// Of 0 seconds: it holds no times.
+TimeUnit time_unit(const ArrayFile& file, const NamedArray& array) {
+  return array.is_vector() ? time_unit_of(own_name(file, array)) : TimeUnit{};
 }
 
 std::vector<Channel> channels_of(const ArrayFile& file) {
   std::vector<Channel> channels;
   for (const NamedArray& array : file.arrays) {
-    if (array.size() / array.channels() < min_samples || time_unit_s(file, array) > 0.0) {
+    if (array.size() / array.channels() < min_samples || time_unit(file, array).seconds > 0.0) {
       continue;
     }
     for (std::size_t i = 0; i < array.channels(); ++i) {
@@ -167,10 +168,10 @@ std::optional<double> rate_of(const ArrayFile& file, const NamedArray& chosen,
     return structure_of(file, array) == structure_of(file, chosen);
   });
   for (const NamedArray& array : arrays) {
-    const double unit_s = time_unit_s(file, array);
-    if (unit_s > 0.0 && array.size() == recording.samples.size()) {
+    const TimeUnit unit = time_unit(file, array);
+    if (unit.seconds > 0.0 && array.size() == recording.samples.size()) {
       const auto rate_hz = rate_of_times(
-          file.read(array), unit_s, options, [&](std::size_t) { return file.path; },
+          file.read(array), unit, options, [&](std::size_t) { return file.path; },
           recording.remarks);
       if (rate_hz && scalar && scalar->structure == structure_of(file, array)) {
         check_agree(*rate_hz, array.name, *scalar, file.path, options);

@@ -28,7 +28,7 @@ struct ArrayFile {
 };
 
 // A vector, or of a matrix one channel along its longer side ("acc:2"). The rate is that of a
-// vector of as many times (seconds_per_unit of its name), or of a scalar of one of the usual names
+// vector of as many times (time_unit_of its name), or of a scalar of one of the usual names
 // of a rate (fs, rate, sampling_rate_hz ...) or an interval (dt, sample_interval ...) in seconds:
 // the nearest in the structures around the array, else the only one there is. Throws InvalidInput
 // as read_recording says.

@@ -95,7 +95,7 @@ std::string joined_by(char separator, const std::vector<std::string>& cells, std
 }
 
 bool is_time(const std::string& name) {
-  return seconds_per_unit(name) > 0.0;
+  return time_unit_of(name).seconds > 0.0;
 }
 
 bool is_in_brackets(const std::string& cell) {

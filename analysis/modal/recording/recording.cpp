@@ -106,14 +106,14 @@ class Table {
 
 struct TimeColumn {
   std::size_t index{};
-  double seconds_per_unit{1.0};
+  TimeUnit unit{1.0, false};
 };
 
 std::optional<TimeColumn> time_column(const Table& table, const ReadingOptions& options) {
   for (std::size_t i = 0; i < table.headers().size(); ++i) {
-    const double unit = seconds_per_unit(table.headers()[i]);
+    const TimeUnit unit = time_unit_of(table.headers()[i]);
     const bool is_replaced = options.rate_hz > 0.0 && !table.begins_with_number(i);
-    if (unit > 0.0 && !is_replaced) {
+    if (unit.seconds > 0.0 && !is_replaced) {
       return TimeColumn{i, unit};
     }
   }
@@ -122,7 +122,7 @@ std::optional<TimeColumn> time_column(const Table& table, const ReadingOptions& 
   }
   const std::vector<double> first = table.values(0);
   const bool ascends = std::ranges::adjacent_find(first, std::greater_equal{}) == first.end();
-  return ascends ? std::optional{TimeColumn{0, 1.0}} : std::nullopt;
+  return ascends ? std::optional{TimeColumn{0}} : std::nullopt;
 }
 
 std::optional<double> rate_from_times(const Table& table, const TimeColumn& column,
@@ -131,8 +131,7 @@ std::optional<double> rate_from_times(const Table& table, const TimeColumn& colu
   const auto place = [&](std::size_t row) {
     return fmt::format("{}:{}", table.file(), table.line(row));
   };
-  return rate_of_times(table.values(column.index), column.seconds_per_unit, options, place,
-                       remarks);
+  return rate_of_times(table.values(column.index), column.unit, options, place, remarks);
 }
 
 // Those that may hold measured values: times are left out, unless nothing else is there.
@@ -145,7 +144,7 @@ std::vector<std::size_t> columns_of_values(const Table& table,
       continue;
     }
     others.push_back(i);
-    if (!table.has_headers() || seconds_per_unit(table.headers()[i]) == 0.0) {
+    if (!table.has_headers() || time_unit_of(table.headers()[i]).seconds == 0.0) {
       values.push_back(i);
     }
   }

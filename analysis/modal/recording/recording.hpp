@@ -42,7 +42,7 @@ Recording read_recording(const std::string& file, const ReadingOptions& options)
 // One channel of a table: cells separated by tabs, semicolons, commas or blanks (the first of these
 // that the rows hold; but with commas a decimal comma is understood), perhaps with comments (#),
 // lines of settings and a header above (plain_table). A column is the time if its header says so
-// (seconds_per_unit) or, with no header and no rate given, if it is the first of several and
+// (time_unit_of) or, with no header and no rate given, if it is the first of several and
 // ascends. A time that is no number gives way to a rate. The rate is that of the even times nearest
 // to these (least squares). A rate given as well must be the same within 0.1 % (agreed_rate).
 // Throws InvalidInput as read_recording says.

@@ -69,11 +69,11 @@ double seconds_of(const std::string& word, bool TimeWord::*use) {
 }
 }  // namespace
 
-double seconds_per_unit(const std::string& name) {
+TimeUnit time_unit_of(const std::string& name) {
   std::istringstream stream{letters_of(name)};
   std::vector<std::string> words{std::istream_iterator<std::string>{stream}, {}};
   if (words == std::vector<std::string>{"x", "value"}) {  // LabVIEW
-    return 1.0;
+    return {1.0, true};
   }
   if (words.size() > 1 && words.front() == "elapsed") {
     words.erase(words.begin());
@@ -83,9 +83,10 @@ double seconds_per_unit(const std::string& name) {
   }
   const double named_s = words.empty() ? 0.0 : seconds_of(words.front(), &TimeWord::is_name);
   if (named_s == 0.0 || words.size() > 2) {
-    return 0.0;
+    return {};
   }
-  return words.size() == 1 ? named_s : seconds_of(words[1], &TimeWord::is_unit);
+  const double unit_s = seconds_of(words.back(), &TimeWord::is_unit);
+  return words.size() == 1 ? TimeUnit{named_s, unit_s > 0.0} : TimeUnit{unit_s, true};
 }
 
 namespace {
@@ -116,7 +117,12 @@ void refuse_times(const std::string& place, const std::string& fault, const std:
 }
 }  // namespace
 
-std::optional<double> rate_of_times(const std::vector<double>& times, double seconds_per_unit,
+// What numbers further apart may be instead: milliseconds, of samples at up to 200 kHz; or numbers
+// of samples, whatever their name says.
+constexpr double longest_without_unit_s = 0.005;
+constexpr double longest_stated_s = 0.1;
+
+std::optional<double> rate_of_times(const std::vector<double>& times, const TimeUnit& unit,
                                     const ReadingOptions& options,
                                     const std::function<std::string(std::size_t)>& place,
                                     std::vector<std::string>& remarks) {
@@ -125,11 +131,11 @@ std::optional<double> rate_of_times(const std::vector<double>& times, double sec
     refuse_times(place(times.size() - 1), "times must ascend", "", options, remarks);
     return std::nullopt;
   }
-  constexpr double longest_period_s = 0.1 * (1.0 - 1e-6);  // milliseconds at 10 kHz, rounded
-  if (period * seconds_per_unit >= longest_period_s) {
-    refuse_times(place(0), fmt::format("times are {:.4g} s apart", period * seconds_per_unit),
-                 " (if they are no seconds, name them time_ms or time_us; if they are no times, "
-                 "give the rate by --rate HZ --trust-rate)",
+  const double longest_period_s = unit.is_stated ? longest_stated_s : longest_without_unit_s;
+  if (period * unit.seconds >= longest_period_s * (1.0 - 1e-6)) {
+    refuse_times(place(0), fmt::format("times are {:.4g} s apart", period * unit.seconds),
+                 " (name them time_s, or if they are no seconds time_ms or time_us; if they are no "
+                 "times, give the rate by --rate HZ --trust-rate)",
                  options, remarks);
     return std::nullopt;
   }
@@ -154,7 +160,7 @@ std::optional<double> rate_of_times(const std::vector<double>& times, double sec
                  advice, options, remarks);
     return std::nullopt;
   }
-  return 1.0 / (period * seconds_per_unit);
+  return 1.0 / (period * unit.seconds);
 }
 
 double agreed_rate(std::optional<double> of_file_hz, const ReadingOptions& options,

@@ -6,10 +6,14 @@
 
 #include "analysis/modal/recording/recording.hpp"
 namespace tapstudy::analysis {
-// Seconds per unit of what a time column or variable is called: "t", "time_us", "Time (ms)",
-// "Zeit [s]", "Time Stamp (us)", "millis", "X_Value", "second" ...; 0: that is not the name of a
-// time.
-double seconds_per_unit(const std::string& name);
+// Of a time column or variable.
+struct TimeUnit {
+  double seconds{};  // per unit; 0: it holds no times
+  bool is_stated{};  // by its name, as "time" does not, which is taken for seconds
+};
+// By its name: "t", "time_us", "Time (ms)", "Zeit [s]", "Time Stamp (us)", "millis", "X_Value",
+// "second" ...
+TimeUnit time_unit_of(const std::string& name);
 // The micro sign and the Greek letter mu as u.
 std::string with_ascii_micro(const std::string& text);
 
@@ -18,9 +22,9 @@ inline constexpr double max_rate_difference = 0.001;
 
 // The rate of the even times nearest to these (least squares) [Hz]. place(i) begins the message
 // about one of them, "file:line" or "file". Unset, with a remark, for times that do not ascend, are
-// 0.1 s apart or more, or are further from a grid than max_jitter_periods, if a rate is given that
-// is to be trusted; otherwise throws InvalidInput for them.
-std::optional<double> rate_of_times(const std::vector<double>& times, double seconds_per_unit,
+// too far apart for their unit, or are further from a grid than max_jitter_periods, if a rate is
+// given that is to be trusted; otherwise throws InvalidInput for them.
+std::optional<double> rate_of_times(const std::vector<double>& times, const TimeUnit& unit,
                                     const ReadingOptions& options,
                                     const std::function<std::string(std::size_t)>& place,
                                     std::vector<std::string>& remarks);

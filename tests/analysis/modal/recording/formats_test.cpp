@@ -193,6 +193,10 @@ TEST_CASE("dates, gaps and an oscilloscope's settings in a table are refused wit
                     Contains("taps.csv:2:") && Contains("500 s apart") && Contains("time_us"));
   CHECK_THROWS_WITH(read_text("time,acc\n" + rows_of(",", 1e3), {}),  // likewise
                     Contains("taps.csv:2:") && Contains("0.5 s apart") && Contains("time_ms"));
+  const std::string slow = "acc\n" + rows_of(",", 100.0);
+  CHECK_THROWS_WITH(read_text("time," + slow, {}),  // of no unit: milliseconds at 20 kHz look so
+                    Contains("taps.csv:2:") && Contains("0.05 s apart") && Contains("time_s"));
+  CHECK(read_text("time_s," + slow, {}).rate_hz == Approx(20.0));
   given.column = "acc";
   const std::string gap = testing::replaced(
       "t,acc\n" + rows_of(",", 1.0), fmt::format("\n0.002,{:.9g}", sample_at(4)), "\n0.002,nan");

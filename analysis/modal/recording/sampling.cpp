@@ -132,11 +132,15 @@ std::optional<double> rate_of_times(const std::vector<double>& times, const Time
     return std::nullopt;
   }
   const double longest_period_s = unit.is_stated ? longest_stated_s : longest_without_unit_s;
-  if (period * unit.seconds >= longest_period_s * (1.0 - 1e-6)) {
-    refuse_times(place(0), fmt::format("times are {:.4g} s apart", period * unit.seconds),
-                 " (name them time_s, or if they are no seconds time_ms or time_us; if they are no "
-                 "times, give the rate by --rate HZ --trust-rate)",
-                 options, remarks);
+  const double rate_hz = 1.0 / (period * unit.seconds);
+  const bool is_confirmed =
+      std::abs(rate_hz - options.rate_hz) <= max_rate_difference * options.rate_hz;
+  if (!is_confirmed && period * unit.seconds >= longest_period_s * (1.0 - 1e-6)) {
+    refuse_times(
+        place(0), fmt::format("times are {:.4g} s apart", period * unit.seconds),
+        " (name them time_s, or give their rate by --rate HZ; if they are no seconds, name "
+        "them time_ms or time_us; if they are no times, give --rate HZ --trust-rate)",
+        options, remarks);
     return std::nullopt;
   }
   double furthest = 0.0;
@@ -160,7 +164,7 @@ std::optional<double> rate_of_times(const std::vector<double>& times, const Time
                  advice, options, remarks);
     return std::nullopt;
   }
-  return 1.0 / (period * unit.seconds);
+  return rate_hz;
 }
 
 double agreed_rate(std::optional<double> of_file_hz, const ReadingOptions& options,

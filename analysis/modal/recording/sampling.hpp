@@ -22,8 +22,9 @@ inline constexpr double max_rate_difference = 0.001;
 
 // The rate of the even times nearest to these (least squares) [Hz]. place(i) begins the message
 // about one of them, "file:line" or "file". Unset, with a remark, for times that do not ascend, are
-// too far apart for their unit, or are further from a grid than max_jitter_periods, if a rate is
-// given that is to be trusted; otherwise throws InvalidInput for them.
+// too far apart for their unit (unless the given rate is theirs), or are further from a grid than
+// max_jitter_periods, if a rate is given that is to be trusted; otherwise throws InvalidInput for
+// them.
 std::optional<double> rate_of_times(const std::vector<double>& times, const TimeUnit& unit,
                                     const ReadingOptions& options,
                                     const std::function<std::string(std::size_t)>& place,

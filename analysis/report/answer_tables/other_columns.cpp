@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <iterator>
 #include <map>
+#include <ranges>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -406,27 +408,34 @@ bool is_called_after_tasks(const std::string& name) {
   return has_word(name, known);
 }
 
+// Its values, with an answer to each.
+using Tasks = std::map<std::string_view, const AnswerOrigin*>;
+
+void add_tasks(const FileAnswers& of, const OtherColumn& column, Tasks& tasks) {
+  for (std::size_t i = 0; i < column.cells.size(); ++i) {
+    if (!is_missing(std::string{column.cells[i]})) {
+      tasks.emplace(column.cells[i], of.origins[i]);
+    }
+  }
+}
+
 // Answers to different tasks are no matrix of one, whichever file they are in.
 void check_is_of_one_task(const std::vector<FileAnswers>& files) {
-  std::map<std::string, std::map<std::string_view, const AnswerOrigin*>> tasks;  // by column
+  std::map<std::string, Tasks> tasks_of;  // by column
   for (const FileAnswers& of : files) {
     for (const OtherColumn& column : of.columns) {
-      for (std::size_t i = 0; is_called_after_tasks(column.name) && i < column.cells.size(); ++i) {
-        if (!is_missing(std::string{column.cells[i]})) {
-          tasks[column.name].emplace(column.cells[i], of.origins[i]);
-        }
+      if (is_called_after_tasks(column.name)) {
+        add_tasks(of, column, tasks_of[column.name]);
       }
     }
   }
-  for (const auto& [column, values] : tasks) {
-    if (values.size() < 2) {
+  for (const auto& [column, tasks] : tasks_of) {
+    if (tasks.size() < 2) {
       continue;
     }
     std::vector<std::string_view> names;
-    for (const auto& [value, origin] : values) {
-      names.push_back(value);
-    }
-    ask(*values.rbegin()->second,
+    std::ranges::copy(tasks | std::views::keys, std::back_inserter(names));
+    ask(*tasks.rbegin()->second,
         fmt::format("the column '{0}' names {1} tasks ({2}), whose answers are no matrix of one: "
                     "keep one of them (--where '{0}={3}'), or count all by --pool-tasks",
                     column, names.size(), fmt::join(names, ", "), names.front()));

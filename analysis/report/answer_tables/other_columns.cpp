@@ -8,7 +8,6 @@
 #include <functional>
 #include <iterator>
 #include <map>
-#include <ranges>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -434,7 +433,7 @@ void check_is_of_one_task(const std::vector<FileAnswers>& files) {
       continue;
     }
     std::vector<std::string_view> names;
-    std::ranges::copy(tasks | std::views::keys, std::back_inserter(names));
+    std::ranges::transform(tasks, std::back_inserter(names), &Tasks::value_type::first);
     ask(*tasks.rbegin()->second,
         fmt::format("the column '{0}' names {1} tasks ({2}), whose answers are no matrix of one: "
                     "keep one of them (--where '{0}={3}'), or count all by --pool-tasks",

@@ -357,9 +357,7 @@ void check_block(MapReader& reader, const Block& block, const Protocol& protocol
     check_targets(reader, protocol, block);
     check_criterion(reader, block);
   }
-  if (protocol.find_block(block.name) != nullptr) {
-    reader.reject("name", fmt::format("'{}' is the name of an earlier block", block.name));
-  }
+  check_name_is_new(reader, protocol.blocks, block.name, "block");
 }
 }  // namespace
 

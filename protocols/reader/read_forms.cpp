@@ -245,15 +245,12 @@ Form read_form(const std::string& name, MapReader& reader, const ReadFile& read_
     form.text = reader.translated_paragraphs({"text", "before the questions; paragraphs"}, "");
     form.picture =
         read_picture(reader, {"picture", "after the text; unset: none"}, read_file, protocol);
-    reader.list(
-        {"items", "the questions; unset: of a shipped form"}, Presence::at_least_one,
-        [&](MapReader& inner) {
-          const FormItem item = read_item(inner, form, read_file, protocol);
-          if (std::ranges::find(form.items, item.name, &FormItem::name) != form.items.end()) {
-            inner.reject("name", fmt::format("'{}' is the name of an earlier item", item.name));
-          }
-          form.items.push_back(item);
-        });
+    reader.list({"items", "the questions; unset: of a shipped form"}, Presence::at_least_one,
+                [&](MapReader& inner) {
+                  const FormItem item = read_item(inner, form, read_file, protocol);
+                  check_name_is_new(inner, form.items, item.name, "item");
+                  form.items.push_back(item);
+                });
   }
   form.name = name;
   return form;

@@ -235,18 +235,15 @@ void check_groups(MapReader& top, const Protocol& protocol, bool are_whole) {
 
 void read_groups(MapReader& top, Protocol& protocol) {
   const std::size_t earlier_problems = top.problems_in_file();
-  top.list(
-      {"groups",
-       "of participants, each of whom is in one: of each run of as many participants as there "
-       "are groups one is in each, in an order that counterbalancing_seed draws, unless `run "
-       "--group` says which; at least two; unset: none"},
-      Presence::optional, [&](MapReader& reader) {
-        Group group = read_group(reader, protocol);
-        if (std::ranges::find(protocol.groups, group.name, &Group::name) != protocol.groups.end()) {
-          reader.reject("name", fmt::format("'{}' is the name of an earlier group", group.name));
-        }
-        protocol.groups.push_back(std::move(group));
-      });
+  top.list({"groups",
+            "of participants, each of whom is in one: of each run of as many participants as there "
+            "are groups one is in each, in an order that counterbalancing_seed draws, unless `run "
+            "--group` says which; at least two; unset: none"},
+           Presence::optional, [&](MapReader& reader) {
+             Group group = read_group(reader, protocol);
+             check_name_is_new(reader, protocol.groups, group.name, "group");
+             protocol.groups.push_back(std::move(group));
+           });
   check_groups(top, protocol, top.problems_in_file() == earlier_problems);
 }
 }  // namespace tapstudy::protocols

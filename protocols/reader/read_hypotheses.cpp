@@ -255,8 +255,8 @@ void check_measures(MapReader& reader, const Protocol& protocol, const Hypothesi
   }
 }
 
-// No threshold is estimated beyond the levels that its procedures may present.
-void check_level(MapReader& reader, const Hypothesis& hypothesis, const Comparison& compared) {
+// Answers say little of levels beyond those that the procedures may present, whatever is estimated.
+void check_below(MapReader& reader, double below, const Comparison& compared) {
   double low = std::numeric_limits<double>::infinity();
   double high = 0.0;
   for (const auto& track : compared.tracks) {
@@ -264,11 +264,10 @@ void check_level(MapReader& reader, const Hypothesis& hypothesis, const Comparis
     low = std::min(low, least);
     high = std::max(high, greatest);
   }
-  if (hypothesis.claim == Claim::threshold_below && low < high &&
-      (hypothesis.below <= low || hypothesis.below >= high)) {
+  if (low < high && (below <= low || below >= high)) {
     reader.reject("below", fmt::format("{} is not between the levels that the block presents, {} "
-                                       "to {}: no threshold is estimated beyond them",
-                                       hypothesis.below, low, high));
+                                       "to {}: answers to these say little of levels beyond",
+                                       below, low, high));
   }
 }
 
@@ -294,7 +293,9 @@ void check_fits_task(MapReader& reader, const Protocol& protocol, const Hypothes
       reader.reject("block", "has no threshold: its procedures find none");
     } else {
       check_measures(reader, protocol, hypothesis, block);
-      check_level(reader, hypothesis, *block.comparison);
+      if (hypothesis.claim == Claim::threshold_below) {
+        check_below(reader, hypothesis.below, *block.comparison);
+      }
     }
     return;
   }
@@ -372,16 +373,11 @@ Hypothesis read_hypothesis(MapReader& reader, const std::vector<std::string>& bl
 void read_hypotheses(MapReader& top, Protocol& protocol) {
   std::vector<std::string> blocks;
   std::ranges::transform(protocol.blocks, std::back_inserter(blocks), &Block::name);
-  top.list(
-      {"hypotheses", "declared before the study; reports test these as planned"},
-      MapReader::Presence::optional, [&](MapReader& reader) {
-        Hypothesis hypothesis = read_hypothesis(reader, blocks, protocol);
-        const bool is_taken = std::ranges::find(protocol.hypotheses, hypothesis.name,
-                                                &Hypothesis::name) != protocol.hypotheses.end();
-        if (is_taken && !hypothesis.name.empty()) {
-          reader.reject("name", fmt::format("'{}' is the name of an earlier one", hypothesis.name));
-        }
-        protocol.hypotheses.push_back(std::move(hypothesis));
-      });
+  top.list({"hypotheses", "declared before the study; reports test these as planned"},
+           MapReader::Presence::optional, [&](MapReader& reader) {
+             Hypothesis hypothesis = read_hypothesis(reader, blocks, protocol);
+             check_name_is_new(reader, protocol.hypotheses, hypothesis.name, "one");
+             protocol.hypotheses.push_back(std::move(hypothesis));
+           });
 }
 }  // namespace tapstudy::protocols

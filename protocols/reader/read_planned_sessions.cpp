@@ -125,10 +125,7 @@ void read_planned_sessions(MapReader& top, Protocol& protocol) {
        "unset: once"},
       Presence::optional, [&](MapReader& reader) {
         PlannedSession session = read_session(reader, protocol);
-        if (protocol.find_session(session.name) != nullptr) {
-          reader.reject("name",
-                        fmt::format("'{}' is the name of an earlier session", session.name));
-        }
+        check_name_is_new(reader, protocol.sessions, session.name, "session");
         if (protocol.sessions.empty() && (session.min_since_last_s || session.max_since_last_s)) {
           reader.reject("has a time since the last session, but is the first");
         }

@@ -1,4 +1,7 @@
 #pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <functional>
 #include <optional>
 
@@ -64,6 +67,14 @@ void read_masking(MapReader& top, Protocol& protocol);
 void read_simulation(MapReader& top, Protocol& protocol);
 
 std::vector<std::string> stimulus_names(const Protocol& protocol);
+// Of a row of a list whose rows have names of their own; kind: "group".
+template <class Rows>
+void check_name_is_new(MapReader& row_reader, const Rows& earlier, const std::string& name,
+                       const char* kind) {
+  if (std::ranges::any_of(earlier, [&](const auto& row) { return row.name == name; })) {
+    row_reader.reject("name", fmt::format("'{}' is the name of an earlier {}", name, kind));
+  }
+}
 // A null value for a name that was rejected.
 template <class Value>
 std::shared_ptr<const Value> named(const std::map<std::string, std::shared_ptr<const Value>>& all,

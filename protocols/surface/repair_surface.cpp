@@ -226,7 +226,9 @@ void close(const TriangleSurface& joined, const RepairRequest& request, SurfaceR
   }
   const double longest_m = repair.holes.longest_m;
   const bool is_mended = mended_surface.pieces_dropped > 0;
-  repair.holes = is_mended ? repair.holes : Holes{};
+  if (!is_mended) {
+    repair.holes = {};
+  }
   wrap(is_mended ? mended_surface.surface : joined, request, repair);
   if (longest_m > hole_m) {
     repair.entered = entered_hole(joined, request, longest_m, repair.surface);
@@ -356,9 +358,9 @@ std::vector<std::string> describe_changes(const SurfaceRepair& repair,
         filling(*request.terms, repair.entered->around_m)));
   } else if (repair.wrap_offset_m && is_skin(repair.surface, *repair.wrap_offset_m)) {
     lines.push_back(fmt::format(
-        "warning: the result is a skin about {:.2g} m thick along the triangles, with nothing "
-        "inside: right for an open sheet; where a solid body was meant, its gaps are wider than "
-        "what the wrap bridges (try a larger {})",
+        "warning: the result is a skin about {:.2g} m thick along the triangles, hollow inside: "
+        "right for an open sheet; where a solid body was meant, its gaps are wider than what the "
+        "wrap bridges (try a larger {})",
         2.0 * core::volume_m3(repair.surface) / area_m2(repair.surface), request.terms->wrap));
   }
   lines.push_back(fmt::format("triangles: {} kept, {} turned, {} dropped, {} added", repair.kept,

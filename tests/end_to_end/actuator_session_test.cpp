@@ -148,9 +148,9 @@ TEST_CASE("a simulated study has what an actuator would have been given, if its 
   REQUIRE(testing::tapstudy({"export", directory / "the_study", "--format", "hdf5", "--out",
                              directory / "out.h5"})
               .exit_code == 0);
-  const auto read = testing::run_program({"/usr/bin/python3",
-                                          testing::source("tests/results/export/hdf5_reader.py"),
-                                          directory / "the_study", directory / "out.h5"});
+  const auto read = testing::run_program(
+      {"/usr/bin/python3", testing::source("tests/results/export/hdf5_reader.py"),
+       directory / "the_study", directory / "out.h5", "questionnaires"});
   INFO(read.standard_error);
   CHECK_THAT(read.standard_output, Contains(is_stored ? "8 trials of actuators" : "0 trials of"));
   CHECK(read.exit_code == 0);

@@ -115,12 +115,12 @@ void refuse_times(const std::string& place, const std::string& fault, const std:
   remarks.push_back(
       fmt::format("{}: {:g} samples a second were taken, by --trust-rate", fault, options.rate_hz));
 }
-}  // namespace
 
 // What numbers further apart may be instead: milliseconds, of samples at up to 200 kHz; or numbers
 // of samples, whatever their name says.
 constexpr double longest_without_unit_s = 0.005;
 constexpr double longest_stated_s = 0.1;
+}  // namespace
 
 std::optional<double> rate_of_times(const std::vector<double>& times, const TimeUnit& unit,
                                     const ReadingOptions& options,

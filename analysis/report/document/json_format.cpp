@@ -75,6 +75,7 @@ nlohmann::ordered_json table_json(const ReportTable& table) {
 namespace {
 Json main_results_json(const BlockSummary& block) {
   const ToJson value;
+  const int answered = block.number_who_answered();
   Json list = Json::array();
   for (const MainResult& result : block.main_results) {
     list.push_back({{"name", result.name},
@@ -82,7 +83,7 @@ Json main_results_json(const BlockSummary& block) {
                     {"low", result.range ? value(result.range->low) : Json(nullptr)},
                     {"high", result.range ? value(result.range->high) : Json(nullptr)},
                     {"participants", result.people ? Json(*result.people) : Json(nullptr)},
-                    {"in_words", in_words(result, block.number_who_answered())}});
+                    {"in_words", in_words(result, answered)}});
   }
   return list;
 }

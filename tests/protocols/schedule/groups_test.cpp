@@ -1,6 +1,7 @@
 #include "protocols/schedule/groups.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <set>
@@ -24,6 +25,16 @@ Names blocks_in(const protocols::Schedule& schedule) {
     }
   }
   return names;
+}
+
+// What refuses it, or that nothing does.
+std::string outcome_of(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const core::InvalidInput& error) {
+    return error.what();
+  }
+  return "was read";
 }
 
 const Names blocks{"practice", "a", "b", "c", "test"};
@@ -228,12 +239,7 @@ TEST_CASE("groups that cannot be are refused at their place, with what is allowe
 
 TEST_CASE("what is stated for all groups and concerns none is refused", "[protocols][groups]") {
   const auto refusal = [](const std::string& keys) {
-    try {
-      testing::with_blocks({"a", "b"}, keys);
-    } catch (const core::InvalidInput& error) {
-      return std::string{error.what()};
-    }
-    return std::string{"was read"};
+    return outcome_of([&] { testing::with_blocks({"a", "b"}, keys); });
   };
   const std::string fixed = "  - {name: x, block_order: [b, a]}\n";
   CHECK_THAT(refusal("block_order: {order: williams}\ngroups:\n" + fixed +
@@ -273,20 +279,14 @@ TEST_CASE("a group has stimuli of its own only of a block where others need not 
           "[protocols][groups]") {
   const auto refusal = [](const std::string& keys) {
     const std::string whole = testing::contents(testing::shipped("paper/discrimination.yaml"));
-    try {
-      protocols::parse_protocol(
-          whole.substr(0, whole.find("\nblocks:")) +
-              "\nblocks:\n  - {name: how, task: rating, question: \"How?\", low: a, high: b, "
-              "stimuli: [mdf_two, acrylic_two]}\n"
-              "  - {name: which, task: identification, question: \"Which?\", "
-              "stimuli: [mdf_two, acrylic_two]}\n"
-              "simulation: {observer: {reference: mdf_two}}\n" +
-              keys,
-          "study.yaml");
-    } catch (const core::InvalidInput& error) {
-      return std::string{error.what()};
-    }
-    return std::string{"was read"};
+    const std::string text = whole.substr(0, whole.find("\nblocks:")) +
+                             "\nblocks:\n  - {name: how, task: rating, question: \"How?\", low: a, "
+                             "high: b, stimuli: [mdf_two, acrylic_two]}\n"
+                             "  - {name: which, task: identification, question: \"Which?\", "
+                             "stimuli: [mdf_two, acrylic_two]}\n"
+                             "simulation: {observer: {reference: mdf_two}}\n" +
+                             keys;
+    return outcome_of([&] { protocols::parse_protocol(text, "study.yaml"); });
   };
   CHECK_THAT(refusal("groups: [{name: x, stimuli: {how: [mdf_two]}}, {name: y}]\n"),
              Contains("groups[0].stimuli.how: its stimuli are compared"));
